@@ -83,6 +83,17 @@ std::optional<std::string> finish_fanuc(Words& words) {
   for (const auto& text : words.passed) {
     if (!read_m(text, words.options.passed_m)) return fmt::format("--pass-over {}: it is an M code, as M10", text);
   }
+  const auto& outputs = words.options.outputs;
+  const auto unused =
+      std::ranges::find_if(outputs, [](const auto& output) { return !fanuc::switches_output(output.first); });
+  if (words.is_haas() && unused != outputs.end())
+    return fmt::format("--output {}={}: of a Haas' program M73, M83 and M88 switch outputs, as 88=NAME", unused->first,
+                       unused->second);
+  const auto dialect = words.is_haas() ? fanuc::Dialect::Haas : fanuc::Dialect::Fanuc;
+  for (const int number : words.options.passed_m) {
+    if (words.is_fanuc() && !fanuc::may_pass_over(number, dialect))
+      return fmt::format("--pass-over M{0}: M{0} is carried out here, and no program goes without it", number);
+  }
   return std::nullopt;
 }
 

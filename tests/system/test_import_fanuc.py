@@ -88,6 +88,16 @@ class ImportFanuc(unittest.TestCase):
         expected = 10 + 11 + 10 * math.pi + 20 * math.pi + 11 + 20
         self.assertAlmostEqual(json.loads(done.stdout)["length_mm"], expected, delta=0.01)
 
+    def test_an_option_that_would_do_nothing_is_refused(self):
+        self.source.write_text("%\nO1\nG21 G90\nT1 M16\nG43 H1\nG0 X0 Y0 Z10.\nM30\n%\n")
+        for option, value in (("--output", "99=Air"), ("--output", "89=Coolant"), ("--pass-over", "M97"), ("--pass-over", "M16"), ("--pass-over", "M6")):
+            done = self.rmac("import", self.source, "--dialect", "haas", option, value)
+            self.assertEqual(done.returncode, 2, value)
+            self.assertIn(f"{option} {value}: ", done.stderr)
+        self.assertEqual(self.rmac("import", self.source, "--dialect", "fanuc", "--pass-over", "M98").returncode, 2)
+        done = self.rmac("import", self.source, "--dialect", "haas", "--output", "88=Coolant", "--pass-over", "M21", "--pass-over", "M88")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def test_it_is_no_program_of_linuxcnc(self):
         """The ending is the same, and the language is not."""
         done = self.rmac("import", self.source)

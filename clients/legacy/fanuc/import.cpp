@@ -32,8 +32,7 @@ class Import {
                 return gcode::Made{writer_.moves(), writer_.bytes()};
               }),
         reader_(options.passed_m, dialect),
-        own_switches_(options, writer_),
-        system_(rules(dialect), interpreter_, flow_, writer_),
+        system_(rules(dialect), interpreter_, flow_),
         extent_(options.assume_end) {
     variables_.set_system({[this](int number, std::size_t place) { return system_.read(number, place); },
                            [this](int number, gcode::Maybe value, std::string_view message, std::size_t place) {
@@ -44,11 +43,7 @@ class Import {
 
   tl::expected<Summary, Error> run() {
     return gcode::carry_out(
-        flow_, writer_, extent_, [this](std::string_view text) { take(text); },
-        [this] {
-          interpreter_.end_all();
-          own_switches_.all_off();
-        });
+        flow_, writer_, extent_, [this](std::string_view text) { take(text); }, [this] { interpreter_.end(); });
   }
 
  private:
@@ -59,10 +54,9 @@ class Import {
     if (!block_.empty() || own.cycle) extent_.begin();
     const bool moves = moves_of(block_);
     if (!own.switched.empty()) interpreter_.require_no_contour(own.switched.front().place);
-    if (block_.m(gcode::MGroup::Tool)) own_switches_.all_off();
-    own_switches_.on(own);
+    haas::switch_on(own, block_, options_, interpreter_);
     if (execute(own.cycle)) return extent_.end();
-    own_switches_.off(own);
+    haas::switch_off(own, options_, interpreter_);
     flow_.go_on(ordered, moves);
   }
 
@@ -73,10 +67,10 @@ class Import {
       refuse(own_cycle->place, "a cycle of many moves, behind each of which G66 would call; write G67 before it");
     if (own_cycle) cycle.emplace(*own_cycle, block_, interpreter_);
     const bool ends = interpreter_.execute(block_, flow_.line()).what == gcode::After::What::End;
-    if (ends) own_switches_.all_off();
     if (!cycle) return ends;
     for (gcode::Block& part : cycle->written_out(options_, interpreter_))
       static_cast<void>(interpreter_.execute(part, flow_.line()));
+    if (cycle->leaves_place_open()) interpreter_.leave_place_open(haas::kBehindHoles);
     return false;
   }
 
@@ -87,7 +81,7 @@ class Import {
 
   void mark(std::string_view text) {
     require_line_end(text, flow_.words() + 1);
-    if (extent_.mark(flow_.running())) interpreter_.end(0);
+    if (extent_.mark(flow_.running())) interpreter_.end();
   }
 
   const Options& options_;
@@ -96,13 +90,26 @@ class Import {
   gcode::Interpreter interpreter_;
   Flow flow_;
   BlockReader reader_;
-  haas::Switches own_switches_;
   gcode::Block block_;
   SystemVariables system_;
   gcode::Extent extent_;
 };
 
 }  // namespace
+
+bool may_pass_over(int number, Dialect dialect) noexcept {
+  constexpr int kLocalCall = 97, kCall = 98, kReturn = 99;
+  const bool is_haas = dialect == Dialect::Haas;
+  if (number == kCall || number == kReturn || (is_haas && number == kLocalCall)) return false;
+  if (const HaasM* own = is_haas ? find_haas_m(number) : nullptr) return own->use != HaasM::Use::As;
+  const gcode::MCode* known = find_m(number);
+  return known == nullptr || !known->refusal.empty();
+}
+
+bool switches_output(int number) noexcept {
+  const HaasM* own = find_haas_m(number);
+  return own != nullptr && own->use == HaasM::Use::SwitchOn;
+}
 
 tl::expected<Summary, Error> import_program(std::string_view program, const Options& options, Writer::Sink sink,
                                             Dialect dialect) {

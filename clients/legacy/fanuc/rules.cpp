@@ -17,6 +17,7 @@ constexpr gcode::Rules kRules{
     .spindle_needs_speed = true,
     .unit_ends_feed = true,
     .degrees_are_lengths = true,
+    .further_in_force = 54.1,
     .whole_dwell_s = 1e-3,
     .cycles = {.repeats = "KL",
                .may_wait = true,
@@ -31,6 +32,10 @@ constexpr gcode::Rules kRules{
 constexpr gcode::Rules kHaasRules = [] {
   gcode::Rules rules = kRules;
   rules.system_name = haas_system_name;
+  rules.further_in_force = 0;
+  rules.stops_switch_off = true;
+  rules.cycles.repeats = "L";
+  rules.cycles.may_peck_less = true;
   return rules;
 }();
 

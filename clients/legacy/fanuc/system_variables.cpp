@@ -17,6 +17,7 @@ constexpr int kAlarm = 3000, kMessageStop = 3006, kInMachine = 5021;
 struct Range {
   int first = 0, last = 0;
   std::string_view what;
+  std::string_view begin = "one of those that are";
 };
 
 // Of numbers that are not known here, what they are.
@@ -29,7 +30,7 @@ constexpr auto kRanges = std::to_array<Range>({
     {3005, 3999, "settings and clocks of a control, which are not known here"},
     {4000, 4999, "codes that were in force, of which this one is not known here"},
     {5001, 5060, "places of the tool, of which this one is not known here"},
-    {5061, 5080, gcode::kProbing},
+    {5061, 5080, gcode::kProbing, "what the last G31 found:"},
     {5081, 5199, "places of the tool, of which this one is not known here"},
     {5200, 5999, "work offsets; set them by G10 L2"},
     {7000, 7999, "work offsets; set them by G10 L20"},
@@ -40,9 +41,7 @@ constexpr auto kRanges = std::to_array<Range>({
   const auto* found = std::ranges::find_if(
       kRanges, [number](const Range& range) { return number >= range.first && number <= range.last; });
   if (found == kRanges.end()) refuse(place, fmt::format("#{} is a variable of the system, and not known here", number));
-  const bool is_of_probe = found->what == gcode::kProbing;
-  refuse(place, fmt::format("#{} is {} {}", number, is_of_probe ? "what the last G31 found:" : "one of those that are",
-                            found->what));
+  refuse(place, fmt::format("#{} is {} {}", number, found->begin, found->what));
 }
 
 }  // namespace
@@ -69,7 +68,8 @@ gcode::Maybe SystemVariables::code_in_force(int number) const {
     case 4014: {
       constexpr std::size_t kSystems = 6, kFirst = 54;
       const std::size_t system = interpreter_.coordinates().active();
-      return system < kSystems ? static_cast<double>(kFirst + system) : 54.1;
+      if (system < kSystems) return static_cast<double>(kFirst + system);
+      return rules_.further_in_force == 0 ? std::nullopt : gcode::Maybe(rules_.further_in_force);
     }
     case 4109:
       if (modes.inverse_time || !modes.unit_mm) return std::nullopt;
@@ -89,6 +89,7 @@ gcode::Maybe SystemVariables::code_in_force(int number) const {
 
 gcode::Maybe SystemVariables::tip(std::size_t axis, int number, std::size_t place) const {
   interpreter_.require_no_contour(place);
+  if (axis != 2) interpreter_.require_place(place);
   if (interpreter_.coordinates().placement())
     refuse(place, fmt::format("#{} is where the tool is, and in turned, tilted or mirrored coordinates controls do not "
                               "mean the same by it; write G69, or G50.1, before it",
@@ -128,7 +129,7 @@ void SystemVariables::write(int number, gcode::Maybe value, std::string_view mes
   }
   if (number != kMessageStop) refuse_of_system(number, place);
   interpreter_.require_no_contour(place);
-  writer_.stop(false, message);
+  interpreter_.stop(false, message);
 }
 
 }  // namespace rmac::fanuc

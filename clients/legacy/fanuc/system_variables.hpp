@@ -13,9 +13,8 @@ namespace rmac::fanuc {
 /// machine). All others are refused by what they are.
 class SystemVariables {
  public:
-  SystemVariables(const gcode::Rules& rules, const gcode::Interpreter& interpreter, const Flow& flow,
-                  gcode::Writer& writer)
-      : rules_(rules), interpreter_(interpreter), flow_(flow), writer_(writer) {}
+  SystemVariables(const gcode::Rules& rules, gcode::Interpreter& interpreter, const Flow& flow)
+      : rules_(rules), interpreter_(interpreter), flow_(flow) {}
 
   [[nodiscard]] gcode::Maybe read(int number, std::size_t place) const;
   void write(int number, gcode::Maybe value, std::string_view message, std::size_t place);
@@ -27,9 +26,8 @@ class SystemVariables {
   [[nodiscard]] gcode::Maybe machine_tip(std::size_t axis, int number, std::size_t place) const;
 
   const gcode::Rules& rules_;
-  const gcode::Interpreter& interpreter_;
+  gcode::Interpreter& interpreter_;
   const Flow& flow_;
-  gcode::Writer& writer_;
 };
 
 }  // namespace rmac::fanuc

@@ -28,6 +28,18 @@ bool dwells(int code) {
 /// Of one block.
 constexpr int kMostRepeats = legacy::kMostPecks;
 
+/// Elsewhere K repeats.
+void require_even_pecks(const Block& block) {
+  for (const char letter : {'I', 'J', 'K'}) {
+    if (!block.has(letter)) continue;
+    refuse(block.place(letter),
+           fmt::format("{} beside a hole: pecks that become less (I, J and K), and ways up to R between those of G73 "
+                       "(K), are not taken; write Q alone, and write L where this is to say how often the hole is "
+                       "repeated",
+                       letter));
+  }
+}
+
 int repeats_of(Block& block, const Rules::Cycles& rules) {
   const auto letter = std::ranges::find_if(rules.repeats, [&block](char one) { return block.has(one); });
   if (letter == rules.repeats.end()) return 1;
@@ -99,6 +111,7 @@ void Drilling::drill(Block& block, int code, int before, std::size_t place) {
     refuse(place,
            "a work system, other coordinates or another plane in the midst of a cycle, whose levels were meant in "
            "those before; write G80 and a G0, and write the cycle again with R and Z");
+  if (rules_.may_peck_less) require_even_pecks(block);
   Point at = mover_.start(place);
   if (before != code) dwell_s_ = std::nullopt;
   if (before != code && !(rules_.words_stay && is_cycle(before))) retract_ = depth_ = peck_ = std::nullopt;

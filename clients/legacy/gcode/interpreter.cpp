@@ -17,7 +17,7 @@ namespace rmac::gcode {
 namespace {
 
 constexpr double kInch_mm = 25.4, kMostTolerance_mm = 100, kMostDwell_s = 3600;
-constexpr int kSpindleOff = 5, kFirstOfState = 70;
+constexpr int kSpindleOff = 5, kFirstOfState = 70, kRadiusOff = 400;
 /// How often M98 calls.
 constexpr double kMostTimes = 1e9;
 /// What a stop's message may have.
@@ -43,6 +43,33 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(begin, std::min(text.find_last_not_of(" \t\r") - begin + 1, kMostMessage_bytes)));
 }
 
+/// M50 to M53: what is in force anyway is no more than said.
+void keep_overrides(Block& block) {
+  constexpr int kFirstOverride = 50, kAdaptiveFeed = 52, kLastOverride = 53;
+  const auto& code = block.m(MGroup::Override);
+  if (!code || code->number < kFirstOverride || code->number > kLastOverride) return;
+  const Word* word = block.find('P');
+  const bool on = word == nullptr || word->value != 0;
+  if (on == (code->number == kAdaptiveFeed)) refuse(code->place, fmt::format("M{}: {}", code->number, kOverridesStay));
+}
+
+/// Of M0, M1, M5 and M9. Throws a Refusal.
+void require_no_stop_beside_hole(const Block& block) {
+  for (const MGroup group : {MGroup::Stop, MGroup::CoolantOff, MGroup::Spindle}) {
+    const auto& code = block.m(group);
+    if (!code || (group == MGroup::Spindle && code->number != kSpindleOff)) continue;
+    refuse(code->place,
+           fmt::format("M{} beside a hole acts above it, before it is drilled; write it in a block of its own",
+                       code->number));
+  }
+}
+
+After save_or_restore(const Block& block, const Code& code) {
+  if (block.codes() > 1) refuse(code.place, fmt::format("M{} has a block of its own; write two", code.number));
+  block.require_all_used();
+  return {After::What::Modes, code.number, 1, code.place};
+}
+
 }  // namespace
 
 Interpreter::Interpreter(const Options& options, const Rules& rules, Writer& writer)
@@ -53,7 +80,8 @@ Interpreter::Interpreter(const Options& options, const Rules& rules, Writer& wri
       compensation_([this](const ContourMove& move, std::size_t place) { mover_.held(move, place); },
                     rules.radius_is_offset),
       motions_(options, rules, modes_, coordinates_, mover_, compensation_),
-      turning_(modes_, coordinates_, mover_),
+      doubts_(modes_, coordinates_),
+      turning_(modes_, coordinates_, doubts_, mover_),
       tool_axis_(options, rules, modes_, coordinates_, turning_, mover_),
       splines_(motions_, modes_, mover_),
       switches_(writer),
@@ -83,6 +111,7 @@ After Interpreter::execute(Block& block, const Line& line) {
   act_on_names(block, options_, writer_);
   dwell(block);
   set_plane_and_units(block);
+  if (const auto& code = block.g(GGroup::Radius); code && code->number != kRadiusOff) require_place(code->place);
   switch_compensation(block, options_, rules_, modes_, switches_, mover_, compensation_);
   set_length(block);
   if (const auto& system = block.g(GGroup::System)) {
@@ -91,6 +120,8 @@ After Interpreter::execute(Block& block, const Line& line) {
   }
   set_control(block);
   set_distances(block);
+  if (block.is_polar() && !(block.polar_radius() && block.polar_angle() && !modes_.incremental))
+    require_place(block.polar_radius() ? block.polar_radius()->place : block.polar_angle()->place);
   place_polar(block, modes_, {tip(0), tip(1)});
   turning_.act(block);
   if (const auto& turn = block.g(GGroup::Turn)) tool_axis_.settle(turn->place);
@@ -114,16 +145,6 @@ void Interpreter::read_comments(const Line& line) {
   }
 }
 
-/// M50 to M53: what is in force anyway is no more than said.
-void Interpreter::keep_overrides(Block& block) {
-  constexpr int kFirst = 50, kAdaptiveFeed = 52, kLast = 53;
-  const auto& code = block.m(MGroup::Override);
-  if (!code || code->number < kFirst || code->number > kLast) return;
-  const Word* word = block.find('P');
-  const bool on = word == nullptr || word->value != 0;
-  if (on == (code->number == kAdaptiveFeed)) refuse(code->place, fmt::format("M{}: {}", code->number, kOverridesStay));
-}
-
 void Interpreter::set_speeds(Block& block) {
   const auto& units = block.g(GGroup::Units);
   set_feed(block, units ? std::optional(unit_of(*units)) : std::nullopt, rules_, modes_);
@@ -135,6 +156,7 @@ void Interpreter::set_tool(Block& block) {
   if (const auto& change = block.m(MGroup::Tool)) {
     switches_.change_tool(change->place);
     coordinates_.forget_tip();
+    doubts_.settle();
     modes_.length = ToolLength::Off;
   }
   const auto& spindle = block.m(MGroup::Spindle);
@@ -147,16 +169,6 @@ void Interpreter::set_tool(Block& block) {
 /// A change of tool would switch on what is to be off, before that.
 bool Interpreter::switches_off_behind(const Block& block) const {
   return rules_.stops_behind_motion && !block.m(MGroup::Tool);
-}
-
-void Interpreter::require_no_stop_beside_hole(const Block& block) {
-  for (const MGroup group : {MGroup::Stop, MGroup::CoolantOff, MGroup::Spindle}) {
-    const auto& code = block.m(group);
-    if (!code || (group == MGroup::Spindle && code->number != kSpindleOff)) continue;
-    refuse(code->place,
-           fmt::format("M{} beside a hole acts above it, before it is drilled; write it in a block of its own",
-                       code->number));
-  }
 }
 
 void Interpreter::switch_off_behind_motion(const Block& block) {
@@ -191,6 +203,7 @@ void Interpreter::set_plane_and_units(Block& block) {
   const bool ends_feed = rules_.unit_ends_feed && !block.has('F');
   if (ends_feed && modes_.unit_mm && *modes_.unit_mm != unit) modes_.feed_mm_min = 0;
   modes_.unit_mm = unit;
+  modes_.unit_is_said = true;
 }
 
 void Interpreter::set_length(Block& block) {
@@ -257,6 +270,7 @@ void Interpreter::act_once(Block& block) {
   if (once->number == 531 || once->number == 536) return turning_.align(block, once->place);
   if (!sets_coordinates(once->number)) return;
   require_unplaced(coordinates_, once->place);
+  if (once->number == 920) doubts_.require_none_of(block);
   rules_.set_coordinates(block, *once, modes_, coordinates_);
   tool_axis_.follow(once->place);
 }
@@ -284,7 +298,7 @@ void Interpreter::move_by(Block& block, int code, std::size_t place) {
   const int before = std::exchange(modes_.motion, code);
   if (code <= 30) modes_.interpolation = code;
   if (!block.once(530)) tool_axis_.require_coordinates_of_part(place);
-  turning_.require_whole(block, code < 20 || code > 53, place);
+  doubts_.require_whole(block, code, rules_.cycles, place);
   if (code == 0 || code == 10) return motions_.straight(block, code == 0, place);
   if (code == 20 || code == 30) return motions_.arc(block, code == 30, place);
   if (code >= 50 && code <= 53 && modes_.inverse_time)
@@ -309,9 +323,21 @@ bool Interpreter::stop(const Block& block) {
   }
   std::string message = block_comment_.empty() ? message_ : block_comment_;
   if (stop->number == 60 && message.empty()) message = "exchange the pallets (M60)";
-  writer_.stop(stop->number == 1, message);
+  this->stop(stop->number == 1, message);
   message_.clear();
   return true;
+}
+
+void Interpreter::stop(bool optional, std::string_view message) {
+  if (rules_.stops_switch_off) {
+    // Whether an optional one stops anything is only known at the machine: no tool is to go on there without turning.
+    if (optional) {
+      switches_.stop_coolant();
+    } else {
+      switches_.off();
+    }
+  }
+  writer_.stop(optional, message);
 }
 
 /// M98 and M99. What stands beside them LinuxCNC passes over, and other controls carry out first.
@@ -332,12 +358,6 @@ After Interpreter::numbered_program(Block& block, const Code& code) {
   block.require_all_used();
   return {After::What::Call, static_cast<int>(label.value), times != nullptr ? static_cast<int>(times->value) : 1,
           code.place};
-}
-
-After Interpreter::save_or_restore(const Block& block, const Code& code) {
-  if (block.codes() > 1) refuse(code.place, fmt::format("M{} has a block of its own; write two", code.number));
-  block.require_all_used();
-  return {After::What::Modes, code.number, 1, code.place};
 }
 
 State Interpreter::state(std::size_t place) const {
@@ -371,7 +391,7 @@ void Interpreter::require_no_contour(std::size_t place) const {
 
 std::optional<double> Interpreter::tip(std::size_t axis) const {
   if (!modes_.unit_mm || compensation_.on() || compensation_.leaving()) return std::nullopt;
-  if (coordinates_.placement()) return std::nullopt;
+  if (coordinates_.placement() || doubts_.left_open(axis)) return std::nullopt;
   const auto tip = coordinates_.program_tip(axis);
   return tip ? std::optional(*tip / *modes_.unit_mm) : std::nullopt;
 }

@@ -2,10 +2,12 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "clients/legacy/gcode/blocks/line.hpp"
 #include "clients/legacy/gcode/compensation_words.hpp"
 #include "clients/legacy/gcode/drilling.hpp"
+#include "clients/legacy/gcode/modes/doubts.hpp"
 #include "clients/legacy/gcode/motions.hpp"
 #include "clients/legacy/gcode/splines.hpp"
 #include "clients/legacy/gcode/switches.hpp"
@@ -40,17 +42,23 @@ class Interpreter {
 
   /// `line`: what the block was read from. Throws a Refusal.
   [[nodiscard]] After execute(Block& block, const Line& line);
-  /// The program ends here. Refused within what has to be ended first.
-  void end(std::size_t place) {
-    splines_.require_closed(place);
-    compensation_.end(place);
-  }
-
-  /// The same, and spindle and coolant off, as by M2.
-  void end_all() {
-    end(0);
+  /// The program ends here, and spindle, coolant and outputs are off, as by M2. Refused within what has to be ended
+  /// first.
+  void end() {
+    splines_.require_closed(0);
+    compensation_.end(0);
     switches_.off();
   }
+
+  /// A stop of the program that is no code of a block. `optional`: as M1.
+  void stop(bool optional, std::string_view message);
+  /// Switches an output of the machine, where it is not so already: a stop, a change of tool and the end switch it off.
+  void switch_output(const std::string& name, bool on) { switches_.switch_output(name, on); }
+
+  /// Where the tool is in X and Y the program leaves open from now on, until it names both. `why` outlives it.
+  void leave_place_open(std::string_view why) { doubts_.leave_open(why); }
+  /// Throws a Refusal where that is so.
+  void require_place(std::size_t place) const { doubts_.require_none(place); }
 
   /// What holds, but for what moves are, and so that it holds again. Both throw a Refusal.
   [[nodiscard]] State state(std::size_t place) const;
@@ -68,12 +76,9 @@ class Interpreter {
 
  private:
   void read_comments(const Line& line);
-  static void keep_overrides(Block& block);
   void set_speeds(Block& block);
   void set_tool(Block& block);
   [[nodiscard]] bool switches_off_behind(const Block& block) const;
-  /// Of M0, M1, M5 and M9. Throws a Refusal.
-  static void require_no_stop_beside_hole(const Block& block);
   void switch_off_behind_motion(const Block& block);
   void dwell(Block& block);
   void set_plane_and_units(Block& block);
@@ -85,7 +90,6 @@ class Interpreter {
   void move_by(Block& block, int code, std::size_t place);
   [[nodiscard]] bool stop(const Block& block);
   [[nodiscard]] After numbered_program(Block& block, const Code& code);
-  [[nodiscard]] static After save_or_restore(const Block& block, const Code& code);
   void set_path_tolerance(double mm);
 
   const Options& options_;
@@ -96,6 +100,7 @@ class Interpreter {
   Mover mover_;
   Compensation compensation_;
   Motions motions_;
+  Doubts doubts_;
   Turning turning_;
   ToolAxis tool_axis_;
   Splines splines_;

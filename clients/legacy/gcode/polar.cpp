@@ -31,9 +31,8 @@ PolarEnd polar_end(const Block& block, const Modes& modes, const ProgramTip& tip
   const bool goes_on = modes.incremental || !radius || !angle;
   if (goes_on && !(tip[0] && tip[1])) {
     refuse(place,
-           "where the tool is now is not known, so neither is where this leads; write both distance and angle under "
-           "G90, or "
-           "a G0 to X, Y and Z before it");
+           "where the tool is now is not known, so neither is where this leads; write both distance and angle "
+           "under G90, or a G0 to X, Y and Z before it");
   }
   const double x = goes_on ? *tip[0] : 0, y = goes_on ? *tip[1] : 0;
   const double distance = std::hypot(x, y);

@@ -29,6 +29,7 @@ void Switches::select_tool(const Word& word) {
 
 void Switches::change_tool(std::size_t place) {
   if (!selected_) refuse(place, "M6 without a T before it: to which tool?");
+  outputs_off();
   tool_ = selected_;
   writer_.change_tool(*tool_);
   machine_.tool_was_changed();
@@ -45,6 +46,28 @@ void Switches::switch_coolant(const Block& block) {
   }
   if (block.m(MGroup::Mist)) machine_.set_mist(true);
   if (block.m(MGroup::Flood)) machine_.set_flood(true);
+}
+
+void Switches::switch_output(const std::string& name, bool on) {
+  const bool changes = on ? outputs_on_.insert(name).second : outputs_on_.erase(name) > 0;
+  if (changes) writer_.output(name, on);
+}
+
+void Switches::outputs_off() {
+  for (const std::string& name : outputs_on_) writer_.output(name, false);
+  outputs_on_.clear();
+}
+
+void Switches::stop_coolant() {
+  outputs_off();
+  machine_.set_mist(false);
+  machine_.set_flood(false);
+  machine_.write();
+}
+
+void Switches::off() {
+  outputs_off();
+  machine_.off();
 }
 
 void Switches::restore(const State& saved) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <set>
+#include <string>
 
 #include "clients/legacy/gcode/modes/modes.hpp"
 #include "clients/legacy/program/machine_switches.hpp"
@@ -27,8 +29,12 @@ class Switches {
   void switch_coolant(const Block& block);
   /// Writes what of them the block changed. Several calls are one request.
   void write() { machine_.write(); }
+  /// Outputs of the machine beside those: on until a stop, a change of tool or the end at the latest.
+  void switch_output(const std::string& name, bool on);
+  /// Coolant of all kinds off, and those outputs.
+  void stop_coolant();
   /// The end of the program: all off.
-  void off() { machine_.off(); }
+  void off();
 
   [[nodiscard]] std::optional<int> tool() const noexcept { return tool_; }
   /// The last T.
@@ -49,8 +55,11 @@ class Switches {
   void restore(const State& saved);
 
  private:
+  void outputs_off();
+
   Writer& writer_;
   legacy::MachineSwitches machine_;
+  std::set<std::string> outputs_on_;
   std::optional<int> selected_, tool_;
   bool speed_is_set_ = false;
 };

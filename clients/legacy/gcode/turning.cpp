@@ -45,7 +45,7 @@ void Turning::mirror(Block& block, const Code& code) {
       const Word word = block.take(letter);
       if (code.number == kMirrors) mirrors_.at(axis) = coordinates_.to_part(axis, modes_.mm(word));
     }
-    if (before != mirrors_.at(axis)) doubt(axis);
+    if (before != mirrors_.at(axis)) doubts_.about(axis);
   }
   place();
 }
@@ -60,9 +60,10 @@ void Turning::turn(Block& block, const Code& code) {
     if (block.has(letter)) {
       turn.centre.at(axis) = coordinates_.to_part(axis, modes_.mm(block.take(letter)));
     } else {
+      doubts_.require_none(code.place);
       turn.centre.at(axis) = known_or_refuse(coordinates_.tip().at(axis), {0, code.place});
     }
-    doubt(axis);
+    doubts_.about(axis);
   }
   require_centre_in_mirrors(turn, code.place);
   if (turns_back(turn)) turn.degrees = -turn.degrees;
@@ -106,8 +107,8 @@ void Turning::tilt(Block& block, const Code& code) {
 
 void Turning::end() {
   if (turn_ && !tilt_) {
-    doubt(turn_->plane.first);
-    doubt(turn_->plane.second);
+    doubts_.about(turn_->plane.first);
+    doubts_.about(turn_->plane.second);
   }
   turn_.reset();
   tilt_.reset();
@@ -130,23 +131,6 @@ void Turning::align(Block& block, std::size_t place) {
   if (!tilt_) refuse(place, "this turns the tool onto a tilted plane, and none is in force; write G68.2 before it");
   static_cast<void>(block.find('P'));  // which of two ways the machine's axes may stand: the appliance knows its own
   mover_.turn(tilt_->z, place);
-}
-
-void Turning::require_whole(const Block& block, bool straight, std::size_t place) {
-  bool any = false, all = true, any_doubtful = false;
-  for (std::size_t axis = 0; axis < doubtful_.size(); ++axis) {
-    if (!doubtful_.at(axis)) continue;
-    const bool written = block.has(kAxisLetters.at(axis));
-    any_doubtful = true;
-    any = any || written;
-    all = all && written && !modes_.incremental;
-  }
-  if (!any_doubtful || (straight && !any)) return;
-  if (!straight || !all)
-    refuse(place,
-           "behind G68, G69, G51.1 and G50.1 a straight move stands first that names all axes which they turn, under "
-           "G90; write it before this");
-  doubtful_ = {};
 }
 
 }  // namespace rmac::gcode

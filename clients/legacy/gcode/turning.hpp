@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "clients/legacy/gcode/modes/doubts.hpp"
 #include "clients/legacy/gcode/modes/modes.hpp"
 #include "clients/legacy/gcode/mover.hpp"
 
@@ -13,17 +14,14 @@ namespace rmac::gcode {
 /// this order, where several are.
 class Turning {
  public:
-  Turning(const Modes& modes, Coordinates& coordinates, Mover& mover)
-      : modes_(modes), coordinates_(coordinates), mover_(mover) {}
+  Turning(const Modes& modes, Coordinates& coordinates, Doubts& doubts, Mover& mover)
+      : modes_(modes), coordinates_(coordinates), doubts_(doubts), mover_(mover) {}
 
   /// G51.1, G50.1, G68, G68.2 and G69 of a block.
   void act(Block& block);
   [[nodiscard]] bool tilted() const noexcept { return tilt_.has_value(); }
   /// G53.1 and G53.6: the tool along the normal of the tilted plane.
   void align(Block& block, std::size_t place);
-  /// Throws a Refusal where the block moves from a place whose coordinates the program believes to be other ones than
-  /// they are: behind G68, G51.1, and their ends, a block has all of the axes that they turned.
-  void require_whole(const Block& block, bool straight, std::size_t place);
 
  private:
   struct Turn {
@@ -37,7 +35,6 @@ class Turning {
   void tilt(Block& block, const Code& code);
   void end();
   void place();
-  void doubt(std::size_t axis) { doubtful_.at(axis) = true; }
   /// Whether a mirror turns the sense of a turn.
   [[nodiscard]] bool turns_back(const Turn& turn) const {
     return mirrors_.at(turn.plane.first).has_value() != mirrors_.at(turn.plane.second).has_value();
@@ -47,11 +44,11 @@ class Turning {
 
   const Modes& modes_;
   Coordinates& coordinates_;
+  Doubts& doubts_;
   Mover& mover_;
   std::array<std::optional<double>, 3> mirrors_{};  ///< where along each axis
   std::optional<Turn> turn_;
   std::optional<legacy::Placement> tilt_;
-  std::array<bool, 3> doubtful_{};  ///< whose coordinate is another than the program's last one
 };
 
 }  // namespace rmac::gcode

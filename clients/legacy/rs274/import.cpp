@@ -51,7 +51,7 @@ class Import {
 
   tl::expected<Summary, Error> run() {
     return gcode::carry_out(
-        flow_, writer_, extent_, [this](std::string_view text) { take(text); }, [this] { interpreter_.end_all(); });
+        flow_, writer_, extent_, [this](std::string_view text) { take(text); }, [this] { interpreter_.end(); });
   }
 
  private:
@@ -59,7 +59,7 @@ class Import {
     if (text.empty()) return;
     if (text.front() == '%') {
       if (text.size() > 1) refuse(1, "nothing stands behind %");
-      if (extent_.mark(flow_.running())) interpreter_.end(0);
+      if (extent_.mark(flow_.running())) interpreter_.end();
     } else if (!(text.front() == '/' && options_.block_delete)) {
       reader_.read(flow_.line(), parameters_, block_);
       go_on(interpreter_.execute(block_, flow_.line()));

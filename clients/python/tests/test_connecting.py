@@ -59,11 +59,38 @@ class ConnectingTest(unittest.TestCase):
             async with await rmac.aio.connect(address) as client:
                 with self.assertRaises(rmac.ConnectionLost):
                     await client.state()
-                with self.assertRaisesRegex(rmac.ConnectionLost, r"nothing of this was sent: client\.reconnect\(\)"):
+                with self.assertRaisesRegex(rmac.ConnectionLost, r"nothing of this was sent: await client\.reconnect\(\) .*, await client\.state\(\)"):
                     await client.state()
                 self.assertNotIn("sent", str(client.lost))
 
         with Peer(lambda request: GREETING if request["method"] == "hello" else None) as peer:
+            asyncio.run(ask(peer.address))
+
+    def test_what_is_asked_behind_an_end_of_any_kind_has_an_error_of_its_own(self):
+        def answers(request):
+            return GREETING if request["method"] == "hello" else b"no JSON\n"
+
+        def check(again, ended):
+            self.assertIsInstance(ended, rmac.ProtocolError)
+            self.assertIsNot(again, ended)
+            self.assertIs(again.__cause__, ended)
+            self.assertIn("nothing of this was sent", str(again))
+
+        async def ask(address):
+            async with await rmac.aio.connect(address) as client:
+                with self.assertRaises(rmac.ProtocolError):
+                    await client.state()
+                with self.assertRaises(rmac.ConnectionLost) as again:
+                    await client.state()
+                check(again.exception, client.lost)
+
+        with Peer(answers) as peer:
+            with rmac.connect(peer.address) as client:
+                with self.assertRaises(rmac.ProtocolError):
+                    client.state()
+                with self.assertRaises(rmac.ConnectionLost) as again:
+                    client.state()
+                check(again.exception, client.lost)
             asyncio.run(ask(peer.address))
 
     def test_an_answer_that_does_not_come_is_told(self):

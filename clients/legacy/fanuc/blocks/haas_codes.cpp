@@ -14,15 +14,13 @@ constexpr std::string_view kHaasPocket =
 constexpr std::string_view kHaasText = "engraving is not taken; have the CAM program write the letters as moves";
 constexpr std::string_view kHaasRound = "moves around a cylinder are not taken; have the CAM program write X and A";
 constexpr std::string_view kHaasTilt =
-    "this way to tilt a plane is not taken; have the post write G234, under which X, Y and Z are those of the tip on "
-    "the "
-    "part";
+    "this way to tilt a plane is not taken; have the post write G234, under which X, Y and Z are those of the tip "
+    "on the part";
 constexpr std::string_view kHaasSpace =
     "corrections in space are not taken; have the CAM program give the path of the tool's centre";
 constexpr std::string_view kHaasRow =
     "at which hole its row begins, manuals leave open; write the cycle at the first hole, and behind it G91 X Y L, "
-    "with "
-    "the way to the next and how many follow";
+    "with the way to the next and how many follow";
 constexpr std::string_view kHaasLength = "a length along a tilted axis is not taken; have the post write G234";
 
 /// A code of the Fanuc's table, or another, by the number that a Haas gives it.
@@ -91,7 +89,7 @@ constexpr auto kHaasG = std::to_array<Entry>({
 });
 static_assert(std::ranges::is_sorted(kHaasG, {}, &Entry::tenfold));
 
-constexpr std::string_view kHaasDoor = "M17 and M18, and doors and pallets, move what the appliance does not have";
+constexpr std::string_view kHaasDoor = "doors and pallets are not the appliance's, and nothing moves them";
 
 constexpr auto kHaasM = std::to_array<HaasM>({
     {7, M::Refused, 0, "the shower of a Haas washes chips away, and is no mist; write M8 for coolant"},

@@ -149,7 +149,7 @@ void BlockReader::add_switched(const HaasWords::Switched& switched) {
 bool BlockReader::add_haas_m(int number, std::size_t place, gcode::Block& block) {
   const HaasM* own = find_haas_m(number);
   if (own == nullptr) return false;
-  if (passed_m_.contains(number)) return own->use != HaasM::Use::As;
+  if (own->use != HaasM::Use::As && passed_m_.contains(number)) return true;
   switch (own->use) {
     case HaasM::Use::Nothing:
       break;

@@ -56,10 +56,12 @@ void pass_over(std::string_view text, std::size_t at, bool sets) {
   require_line_end(text, at);
 }
 
+std::string name_of(int program) {
+  return program != FanucProgram::kUnnumbered ? fmt::format("O{}", program) : "this program";
+}
+
 [[noreturn]] void refuse_label(int label, int program, std::size_t place) {
-  const bool numbered = program != FanucProgram::kUnnumbered;
-  refuse(place, fmt::format("there is no N{} in {}", label,
-                            numbered ? fmt::format("O{}", program) : std::string("this program")));
+  refuse(place, fmt::format("there is no N{} in {}", label, name_of(program)));
 }
 
 }  // namespace
@@ -258,13 +260,13 @@ bool Flow::call_of_macro(std::string_view text, std::size_t at) {
 }
 
 std::size_t Flow::program_of(int number, std::size_t place) const {
-  constexpr int kFirstOfProbe = 9700, kLastOfProbe = 9999;
+  constexpr int kFirstOfProbe = 9700, kLastOfProbe = 9999, kProbeOfHaas = 9023;
   if (const auto found = outline_.find(number)) return *found;
-  if (number >= kFirstOfProbe && number <= kLastOfProbe)
-    refuse(place,
-           fmt::format("O{} is not in this file. Makers of probes have theirs from O9700 on: {}. Another macro is "
-                       "to be written behind the end of the main program",
-                       number, gcode::kProbing));
+  if ((number >= kFirstOfProbe && number <= kLastOfProbe) || number == kProbeOfHaas)
+    refuse(place, fmt::format("O{} is not in this file. Makers of probes have theirs from O9700 on, and a Haas has "
+                              "O9023: {}. Another macro is "
+                              "to be written behind the end of the main program",
+                              number, gcode::kProbing));
   refuse(place, fmt::format("O{0} is not in this file, and no other is read; write O{0} ... M99 behind the end of the "
                             "main program",
                             number));
@@ -291,6 +293,10 @@ void Flow::call_local(const Ordered& ordered) {
   const std::size_t program = frames_.back().program;
   const auto spot = outline_.find_label(program, ordered.label.value(), next_);
   if (!spot) refuse_label(*ordered.label, this->program(), ordered.place);
+  if (outline_.labels(program, *ordered.label) > 1)
+    refuse(ordered.place, fmt::format("there is more than one N{} in {}, and which of them M97 calls, controls do not "
+                                      "agree upon; give them numbers of their own",
+                                      *ordered.label, name_of(this->program())));
   if (!outline_.loops_around(program, *spot).empty())
     refuse(ordered.place, fmt::format("N{} is within a loop; nothing jumps into a loop", *ordered.label));
   enter({Kind::Subprogram, program, *spot, {}, 0, {}, ordered.label}, ordered.times, ordered.place);

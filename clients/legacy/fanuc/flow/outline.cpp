@@ -157,7 +157,7 @@ std::vector<std::size_t> Outline::loops_around(std::size_t program, const Spot& 
   return around;
 }
 
-std::optional<Spot> Outline::find_label(std::size_t program, int label, const Spot& from) {
+const std::multimap<int, Spot>& Outline::labels_of(std::size_t program) {
   auto [entry, is_new] = labels_.try_emplace(program);
   auto& labels = entry->second;
   if (is_new) {
@@ -176,7 +176,11 @@ std::optional<Spot> Outline::find_label(std::size_t program, int label, const Sp
       spot.at = end;
     }
   }
-  const auto [first, last] = labels.equal_range(label);
+  return labels;
+}
+
+std::optional<Spot> Outline::find_label(std::size_t program, int label, const Spot& from) {
+  const auto [first, last] = labels_of(program).equal_range(label);
   if (first == last) return std::nullopt;
   const auto behind = std::find_if(first, last, [&from](const auto& found) { return from <= found.second; });
   return (behind == last ? first : behind)->second;

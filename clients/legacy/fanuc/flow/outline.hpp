@@ -55,6 +55,8 @@ class Outline {
   [[nodiscard]] std::vector<std::size_t> loops_around(std::size_t program, const Spot& spot) const;
   /// The line N of this number in a program: the next behind a spot, or from the program's begin.
   [[nodiscard]] std::optional<Spot> find_label(std::size_t program, int label, const Spot& from);
+  /// How many lines of a program have this N.
+  [[nodiscard]] std::size_t labels(std::size_t program, int label) { return labels_of(program).count(label); }
 
  private:
   void read(std::string_view text);
@@ -62,6 +64,7 @@ class Outline {
   void begin_loop(const gcode::Line& line, std::size_t place, const Spot& spot, const Spot& behind);
   void end_loop(const gcode::Line& line, std::size_t place, const Spot& behind);
   void require_loops_ended() const;
+  [[nodiscard]] const std::multimap<int, Spot>& labels_of(std::size_t program);
 
   std::string_view text_;
   std::vector<FanucProgram> programs_;

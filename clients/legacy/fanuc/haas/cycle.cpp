@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <string_view>
 
 #include "clients/legacy/fanuc/blocks/refusal.hpp"
@@ -50,11 +51,33 @@ Cycle::Cycle(const gcode::Code& code, gcode::Block& block, const gcode::Interpre
     if (block.has(letter)) words_.emplace(letter, block.take(letter));
   }
   const auto& beside = block.g(gcode::GGroup::Motion);
-  if (is_pocket() && beside && beside->number != kRapid && beside->number != kLine)
+  if (is_pocket() && beside && beside->number != kRapid && beside->number != kLine &&
+      beside->number != gcode::Modes::kNoMotion)
     refuse(beside->place, fmt::format("{} beside a pocket; write two blocks", gcode::g_name(beside->number)));
-  if (is_pocket()) return;
-  // Otherwise it would drill where the tool is.
-  if (beside && beside->number >= kFirstCycle) block.add_word('L', {0, code.place});
+  if (!is_pocket()) {
+    take_holes(block);
+    return;
+  }
+  const bool ended = beside && beside->number == gcode::Modes::kNoMotion;
+  if (ended) motion_before_ = gcode::Modes::kNoMotion;
+  const int acts = ended ? interpreter.modes().interpolation : beside ? beside->number : motion_before_;
+  if ((acts == kClockwise || acts == kCounterClockwise) && (block.has_any("XY") || block.is_polar()))
+    refuse(code.place, fmt::format("{} behind {}, which X and Y beside it would be an arc of; write G0 or G1 beside it",
+                                   gcode::g_name(code.number), gcode::g_name(acts)));
+}
+
+void Cycle::take_holes(gcode::Block& block) const {
+  const std::string name = gcode::g_name(code_.number);
+  for (const char letter : {'A', 'B', 'C'}) {
+    if (block.has(letter)) refuse(block.place(letter), fmt::format("{} beside {}; write two blocks", letter, name));
+  }
+  if (block.is_polar())
+    refuse((block.polar_radius() ? block.polar_radius() : block.polar_angle())->place,
+           fmt::format("X and Y under G16 beside {}; write G15 before, and X and Y of the circle's middle", name));
+  const auto& beside = block.g(gcode::GGroup::Motion);
+  const int motion = beside ? beside->number : motion_before_;
+  const bool drills = motion >= kFirstCycle && motion != gcode::Modes::kNoMotion;
+  if (drills && (beside || block.has('Z'))) block.add_word('L', {0, code_.place});
 }
 
 bool Cycle::is_pocket() const noexcept {
@@ -83,6 +106,8 @@ std::vector<gcode::Block> Cycle::written_out(const gcode::Options& options,
   if (!tip[0] || !tip[1])
     refuse(code_.place,
            "around the place where the tool is: that is not known here; write a G0 to X, Y and Z before it");
+  if (is_pocket() || !(find('X') != nullptr && find('Y') != nullptr && !interpreter.modes().incremental))
+    interpreter.require_place(code_.place);
   if (interpreter.modes().plane.normal != 2) refuse(code_.place, "this cycle is taken in G17");
   return is_pocket() ? pocket(options, interpreter) : holes(interpreter);
 }

@@ -1,12 +1,17 @@
 #pragma once
 
 #include <map>
+#include <string_view>
 #include <vector>
 
 #include "clients/legacy/gcode/blocks/block.hpp"
 #include "clients/legacy/gcode/interpreter.hpp"
 
 namespace rmac::fanuc::haas {
+
+/// Why the place of the tool is not known there.
+inline constexpr std::string_view kBehindHoles =
+    "where the tool is behind the holes of G70 and G71, manuals leave open";
 
 /// G12, G13, G70 or G71 of a block: what they mean is written out as blocks of plain moves and holes.
 class Cycle {
@@ -15,6 +20,8 @@ class Cycle {
   /// it is written out as. Throws a Refusal for what does not go with it.
   Cycle(const gcode::Code& code, gcode::Block& block, const gcode::Interpreter& interpreter);
 
+  /// Where the tool is behind it in X and Y, manuals leave open.
+  [[nodiscard]] bool leaves_place_open() const noexcept { return !is_pocket(); }
   /// By what holds behind the rest. Throws a Refusal.
   [[nodiscard]] std::vector<gcode::Block> written_out(const gcode::Options& options,
                                                       const gcode::Interpreter& interpreter) const;
@@ -28,6 +35,8 @@ class Cycle {
   };
 
   [[nodiscard]] bool is_pocket() const noexcept;
+  /// What of the block would drill where the tool is only sets what holes have.
+  void take_holes(gcode::Block& block) const;
   [[nodiscard]] const gcode::Word& word(char letter) const;
   [[nodiscard]] const gcode::Word* find(char letter) const;
   [[nodiscard]] int count(char letter, int least) const;

@@ -6,31 +6,30 @@
 
 namespace rmac::fanuc::haas {
 
-void Switches::write(int number, bool on) {
-  writer_.output(options_.outputs.at(number), on);
-}
-
-void Switches::on(const HaasWords& words) {
+void switch_on(const HaasWords& words, const gcode::Block& block, const gcode::Options& options,
+               gcode::Interpreter& interpreter) {
   for (const auto& switched : words.switched) {
     if (!switched.on) continue;
-    if (!options_.outputs.contains(switched.number))
+    for (const auto group : {gcode::MGroup::Tool, gcode::MGroup::Stop}) {
+      if (const auto& off = block.m(group))
+        refuse(switched.place, fmt::format("M{0} beside M{1}, which switches it off; write M{0} in a block behind it",
+                                           switched.number, off->number));
+    }
+    const auto output = options.outputs.find(switched.number);
+    if (output == options.outputs.end())
       refuse(switched.place,
              fmt::format("which output of the machine is {1} is not known here; give --output {0}=NAME, "
                          "or --pass-over M{0} where the cut may go without",
                          switched.number, switched.what));
-    if (on_.insert(switched.number).second) write(switched.number, true);
+    interpreter.switch_output(output->second, true);
   }
 }
 
-void Switches::off(const HaasWords& words) {
+void switch_off(const HaasWords& words, const gcode::Options& options, gcode::Interpreter& interpreter) {
   for (const auto& switched : words.switched) {
-    if (!switched.on && on_.erase(switched.number) > 0) write(switched.number, false);
+    const auto output = options.outputs.find(switched.number);
+    if (!switched.on && output != options.outputs.end()) interpreter.switch_output(output->second, false);
   }
-}
-
-void Switches::all_off() {
-  for (const int number : on_) write(number, false);
-  on_.clear();
 }
 
 }  // namespace rmac::fanuc::haas

@@ -47,9 +47,8 @@ inline constexpr int kInchOfMach = 700, kMmOfMach = 710;
 
 /// Of moves that end where a probe touches, and of what they find: only the machine knows it, when it gets there.
 inline constexpr std::string_view kProbing =
-    "where a probe touches is only known when the machine gets there; write a measuring plan, which sets the part "
-    "frame "
-    "and lengths of tools before the program runs (rmac measure PLAN.json --apply), and take this out";
+    "where a probe touches is only known when the machine gets there; write a measuring plan, which sets the "
+    "part frame and lengths of tools before the program runs (rmac measure PLAN.json --apply), and take this out";
 inline constexpr std::string_view kOverridesStay = "overrides belong to the operator, and no program takes them away";
 
 }  // namespace rmac::gcode

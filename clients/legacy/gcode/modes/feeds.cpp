@@ -26,7 +26,7 @@ void set_feed(Block& block, const std::optional<double>& unit, const Rules& rule
   }
   if (feed->value < 0) refuse(feed->place, "a negative feed");
   // By the report's table F comes before the unit.
-  const bool in_new_unit = unit && (rules.unit_ends_feed || !modes.unit_mm);
+  const bool in_new_unit = unit && (rules.unit_ends_feed || !modes.unit_is_said);
   const double counted = in_new_unit ? *unit : modes.unit(feed->place);
   modes.feed_mm_min = modes.feed(*feed, counted);
   modes.feed_degrees_min = modes.feed_mm_min / counted;

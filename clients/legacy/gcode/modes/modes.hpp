@@ -66,6 +66,7 @@ struct Modes {
   static constexpr int kNoMotion = 800;
 
   std::optional<double> unit_mm;
+  bool unit_is_said = false;      ///< by the program, and not by an option alone
   int motion = kNoMotion;         ///< tenfold G code
   int interpolation = kNoMotion;  ///< the last of G0 to G3
   WholeNumbers whole_numbers = WholeNumbers::Refused;

@@ -38,7 +38,10 @@ struct Rules {
   bool unit_ends_feed = false;          ///< F does not outlive another unit, and beside it counts in the new one
   bool turns_as_written = false;        ///< a table goes to an angle as the numbers have it; else that is to be said
   bool degrees_are_lengths = false;     ///< F of a move that turns a table is of X, Y, Z and of its degrees together
-  double whole_dwell_s = 1;             ///< of a P without a decimal point
+  bool stops_switch_off = false;        ///< M0 ends spindle and coolant, and M1 coolant
+  /// What the control tells of work systems behind the first six; 0: not known here.
+  double further_in_force = 0;
+  double whole_dwell_s = 1;  ///< of a P without a decimal point
 
   struct Cycles {
     std::string_view repeats = "L";  ///< letters
@@ -48,6 +51,7 @@ struct Rules {
     bool cross_first = false;        ///< to the hole where the tool is, and then to R
     bool bore_to_r = false;          ///< G89 comes up at feed to R alone, as G85 does
     bool may_turn = false;           ///< a hole may have an angle of the table beside it, or nothing but that
+    bool may_peck_less = false;      ///< I, J and K are of pecks that become less, which is refused
     bool levels_stay = false;  ///< R and Z that a block does not say are where they were, whatever mode is in force
   } cycles;
 };

@@ -22,11 +22,10 @@ class ConnectionLost(RmacError, ConnectionError):
     """The connection ended; what was asked and not answered may have been carried out or not."""
 
 
-def asked_too_late(ended: RmacError) -> RmacError:
-    """What to raise of a question that comes when the connection has ended already: none of it was sent."""
-    if not isinstance(ended, ConnectionLost):
-        return ended
-    return ConnectionLost(f"{ended}; nothing of this was sent: client.reconnect() connects again, client.state() tells then what the machine does")
+def asked_too_late(ended: RmacError, wait: str = "") -> ConnectionLost:
+    """What to raise of a question that comes when the connection has ended already, by whatever: none of it was sent.
+    `wait` stands before each call of the client in the advice."""
+    return ConnectionLost(f"{ended}; nothing of this was sent: {wait}client.reconnect() connects again, {wait}client.state() tells then what the machine does")
 
 
 class NotAnswered(RmacError, TimeoutError):

@@ -88,7 +88,7 @@ class Connection:
 
     def _transmit(self, ask: Callable[[Any, Promise], bytes], what: Any, promise: Promise) -> None:
         if self.ended is not None:
-            raise asked_too_late(self.ended) from self.ended
+            raise asked_too_late(self.ended, "await ") from self.ended
         self._writer.write(ask(what, promise))
 
     async def _read(self, reader: asyncio.StreamReader) -> None:

@@ -39,6 +39,13 @@ TEST(Rs274Machine, SwitchesAllOffAtTheEnd) {
   EXPECT_EQ(calls_of(done.requests.back()).size(), 2U);
 }
 
+TEST(Rs274Machine, SwitchesAllOffAtTheSecondPercentSign) {
+  const auto done = imported("%\nG21 G0 X0 Y0 Z0\nM3 S9 M8\n%\n");
+  EXPECT_EQ(done.methods.back(), "InTurn");
+  EXPECT_EQ(calls_of(done.requests.back()).size(), 2U);
+  EXPECT_EQ(done.requests.size(), 3U);
+}
+
 TEST(Rs274Machine, TellsAPersonWhyItStops) {
   EXPECT_EQ(imported(program_of("M0 (turn the \"part\")")).requests[1]["params"]["Message"], "turn the \"part\"");
   EXPECT_EQ(imported(program_of("(MSG, look)\nM1")).requests[1]["params"],

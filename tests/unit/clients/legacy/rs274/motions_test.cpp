@@ -76,9 +76,9 @@ TEST(Rs274Motion, NeedsAModeAndAFeed) {
 
 // Held against rs274, which sets the feed before the unit.
 TEST(Rs274Motion, CountsAFeedInTheUnitBeforeThatOfItsBlock) {
-  const auto feeds_of = [](const std::string& program) {
+  const auto feeds_of = [](const std::string& program, const Options& options = {}) {
     std::vector<double> feeds;
-    for (const auto& request : imported(program).requests) {
+    for (const auto& request : imported(program, options).requests) {
       if (request["method"] == "RMAC_CAM.SetFeedrate") feeds.push_back(request["params"]["Feedrate"]);
     }
     return feeds;
@@ -87,6 +87,13 @@ TEST(Rs274Motion, CountsAFeedInTheUnitBeforeThatOfItsBlock) {
   EXPECT_THAT(feeds_of(program_of("G20\nF10 G1 X1\nG21 F20 X1\nX2 F20")), ElementsAre(254, 508, 20));
   EXPECT_THAT(feeds_of("G20 F10\nG0 X0 Y0 Z1\nG1 X1\nG21 X2 F10\nM2\n"), ElementsAre(254))
       << "in the first block there is none before it, and 10 inches are 254 mm";
+  const auto of_unit = [&feeds_of](double mm, const std::string& program) {
+    return feeds_of(program, {.unit_mm = mm});
+  };
+  EXPECT_THAT(of_unit(25.4, "G21 F100\nG0 X0 Y0 Z1\nG1 X2\nM2\n"), ElementsAre(100))
+      << "--unit says what is not written, and the first unit that is written is";
+  EXPECT_THAT(of_unit(1, "F100\nG20 F10\nG0 X0 Y0 Z1\nG1 X2\nG21 F20 X3\nM2\n"), ElementsAre(254, 508));
+  EXPECT_THAT(of_unit(25.4, "G0 X0 Y0 Z1\nG1 X2 F10\nM2\n"), ElementsAre(254));
 }
 
 TEST(Rs274Arc, StaysAnArcInEachPlane) {

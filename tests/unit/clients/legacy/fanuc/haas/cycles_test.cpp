@@ -157,48 +157,5 @@ TEST(HaasPocket, IsRefusedWhereItIsNone) {
   for (const auto& [lines, what] : cases) EXPECT_THAT(refusal(lines, options, "O9\nM99\n"), HasSubstr(what)) << lines;
 }
 
-TEST(HaasHoles, LieOnTheirCircle) {
-  const auto holes = [](const std::string& lines) {
-    std::vector<std::array<double, 2>> all;
-    for (const auto& end : ends(lines)) {
-      if (std::abs(end[2] + 3) < kSame_mm) all.push_back({end[0], end[1]});
-    }
-    return all;
-  };
-  const auto expect_on_circle = [](const auto& all, std::size_t count, double x, double y, double radius, double first,
-                                   double step) {
-    ASSERT_EQ(all.size(), count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const double angle = (first + static_cast<double>(i) * step) * std::numbers::pi / 180;
-      EXPECT_NEAR(all[i][0], x + radius * std::cos(angle), kSame_mm) << i;
-      EXPECT_NEAR(all[i][1], y + radius * std::sin(angle), kSame_mm) << i;
-    }
-  };
-  const std::string cycle = "G0 X7. Y3.\nG99 G81 Z-3. R1. F100. L0\n";
-  expect_on_circle(holes(cycle + "G70 I5. J15. L12"), 12, 7, 3, 5, 15, 30);
-  expect_on_circle(holes(cycle + "G70 I5. L4"), 4, 7, 3, 5, 0, 90);
-  expect_on_circle(holes(cycle + "G71 I5. J30. K-20. L3"), 3, 7, 3, 5, 30, -20);
-  expect_on_circle(holes(cycle + "G70 X1. Y2. I5. L5"), 5, 1, 2, 5, 0, 72);
-  expect_on_circle(holes(cycle + "G91\nG70 X1. Y2. I5. L5"), 5, 8, 5, 5, 0, 72);
-  expect_on_circle(holes("G0 X7. Y3.\nG99 G83 G70 Z-3. R1. Q9. F100. I5. J90. L3"), 3, 7, 3, 5, 90, 120);
-  expect_on_circle(holes(cycle + "G70 I5. L6\nG70 X20. Y0 I2. L6").size() == 12 ? holes(cycle + "G70 I5. L6")
-                                                                                : std::vector<std::array<double, 2>>{},
-                   6, 7, 3, 5, 0, 60);
-}
-
-TEST(HaasHoles, AreRefusedWithoutACycleOrTheirWords) {
-  const std::string cycle = "G99 G81 Z-3. R1. F100. L0\n";
-  EXPECT_THAT(refusal("G70 I5. L4"), StartsWith("5:1: G70 says where holes are"));
-  EXPECT_THAT(refusal(cycle + "G80\nG70 I5. L4"), StartsWith("7:1: G70 says where holes are"));
-  EXPECT_THAT(refusal(cycle + "G70 L4"), HasSubstr("needs I"));
-  EXPECT_THAT(refusal(cycle + "G70 I5."), HasSubstr("needs L"));
-  EXPECT_THAT(refusal(cycle + "G70 I5. L0"), HasSubstr("1 to 10000"));
-  EXPECT_THAT(refusal(cycle + "G70 I5. L4 K3."), HasSubstr("K belongs to G71"));
-  EXPECT_THAT(refusal(cycle + "G71 I5. L4 J0"), HasSubstr("needs K"));
-  EXPECT_THAT(refusal(cycle + "G71 I5. L4 K3."), HasSubstr("needs J"));
-  EXPECT_THAT(refusal(cycle + "G70 I-5. L4"), HasSubstr("more than 0"));
-  EXPECT_THAT(refusal(cycle + "G70 I5. L4 M9"), HasSubstr("block of its own"));
-}
-
 }  // namespace
 }  // namespace rmac::fanuc::haas

@@ -7,6 +7,7 @@
 namespace rmac::fanuc::haas {
 namespace {
 
+using testing::Contains;
 using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -117,6 +118,36 @@ TEST(HaasPost, GoesHomeByG28Alone) {
   EXPECT_THAT(refusal_of(program_of("G28"), of_a_shop()), HasSubstr("needs X, Y or Z"));
 }
 
+TEST(HaasPost, TellsTheWorkSystemInForceWhereItHasOneNumber) {
+  Options options;
+  for (const std::size_t system : {0U, 5U, 6U}) options.offsets[system] = {0, 0, 0};
+  EXPECT_EQ(ends("G59\nG0 X#4014 Y0 Z0", options)[0][0], 59);
+  EXPECT_THAT(refusal("G154 P1\n#1=#4014", options), StartsWith("6:4: #4014 is one of those that are codes"));
+}
+
+TEST(HaasPost, TellsOfProbingInItsOwnMacros) {
+  for (const std::string code : {"G65 P9023 A20. T1.", "G65 P9810 Z5.", "G65 P9995 W54."})
+    EXPECT_THAT(refusal(code), HasSubstr("rmac measure PLAN.json --apply")) << code;
+  EXPECT_THAT(refusal("G65 P8000"), Not(HasSubstr("measure")));
+}
+
+TEST(HaasPost, ChangesToolsByM16WhateverIsPassedOver) {
+  Options options;
+  options.passed_m = {16};
+  EXPECT_THAT(done("T1 M16", options).methods, Contains("DoToolChange"));
+}
+
+TEST(HaasPost, HasG80BesideAPocketInItsHeader) {
+  EXPECT_EQ(refusal("G80 G12 I5. Z-1. D0 F100."), "taken");
+  EXPECT_EQ(refusal("G99 G81 Z-1. R2. F100.\nG80 G13 I5. Z-1. D0"), "taken");
+}
+
+TEST(HaasPost, IsToldWhereAPocketStandsBehindAnArc) {
+  EXPECT_THAT(refusal("G2 X1. I.5 F100.\nG12 X0 Y0 I5. Z-1. D0"), StartsWith("6:1: G12 behind G2"));
+  EXPECT_THAT(refusal("G2 X1. I.5 F100.\nG12 X0 Y0 I5. Z-1. D0"), HasSubstr("write G0 or G1 beside it"));
+  EXPECT_EQ(refusal("G2 X1. I.5 F100.\nG1 G12 X0 Y0 I5. Z-1. D0"), "taken");
+}
+
 TEST(HaasPost, IsRefusedWithWhatToDo) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"G150 P100 X1. Y1. Z-1. Q.5 R1. I.3 J5. K.1 G41 D1 F10.", "have the CAM program write its moves"},
@@ -129,7 +160,9 @@ TEST(HaasPost, IsRefusedWithWhatToDo) {
       {"M96 P10 Q8", "--pass-over M96"},
       {"M109 P501", "write M0"},
       {"M104", "measuring plan"},
-      {"M50", "--pass-over M50"},
+      {"M50", "M50: doors and pallets"},
+      {"M80", "--pass-over M80"},
+      {"M17", "--pass-over M17"},
       {"M7", "write M8"},
       {"M138", "--pass-over M138"},
       {"M21", "give --pass-over M21"},
@@ -143,32 +176,6 @@ TEST(HaasPost, IsRefusedWithWhatToDo) {
   Options options;
   options.passed_m = {7, 21, 50, 88, 138};
   for (const std::string line : {"M7", "M21", "M50", "M88\nM89", "M138"}) EXPECT_EQ(refusal(line, options), "taken");
-}
-
-TEST(HaasSwitch, IsNamedAndGoesOffWithTheToolAndTheProgram) {
-  Options options;
-  options.outputs = {{88, "Through"}, {73, "Air"}, {83, "Jet"}};
-  const auto switched = [&options](const std::string& lines) {
-    std::vector<std::string> all;
-    for (const auto& request : done(lines, options).requests) {
-      for (const auto& call : request["params"].value("Calls", nlohmann::json::array())) {
-        if (call["method"] == "RMAC_CAM.SetOutput")
-          all.push_back(call["params"]["Name"].get<std::string>() + (call["params"]["On"] ? "+" : "-"));
-      }
-      if (request["method"] == "RMAC_CAM.DoToolChange") all.emplace_back("tool");
-      if (request["method"] == "RMAC_CAM.MoveAlongLine") all.emplace_back("line");
-    }
-    return all;
-  };
-  EXPECT_THAT(switched("M88\nG1 X1. M89\nM89"), ElementsAre("Through+", "line", "Through-"));
-  EXPECT_THAT(switched("G1 X1. M73\nX2. M74 M83"), ElementsAre("Air+", "line", "Jet+", "line", "Air-", "Jet-"));
-  EXPECT_THAT(switched("M88\nM88\nT1 M6"), ElementsAre("Through+", "Through-", "tool"));
-  EXPECT_THAT(switched("M89\nM74\nM84"), ElementsAre());
-  EXPECT_THAT(refusal("M88 M89", options), StartsWith("5:5: what M88 switches is switched twice"));
-  EXPECT_THAT(refusal("M88"), StartsWith("5:1: which output of the machine is coolant through the spindle"));
-  options.tool_diameters_mm = {{1, 4}};
-  EXPECT_THAT(refusal("G1 G41 D1 X10.\nM88\nY20.\nG40 X0", options),
-              StartsWith("6:1: cutter radius compensation is on"));
 }
 
 TEST(HaasLocalCall, RunsLinesOfTheSameProgram) {
@@ -188,6 +195,10 @@ TEST(HaasLocalCall, RunsLinesOfTheSameProgram) {
 TEST(HaasLocalCall, IsRefusedWhereItLeadsNowhere) {
   EXPECT_THAT(refusal("M97 P5"), StartsWith("5:1: there is no N5 in O1"));
   EXPECT_THAT(refusal("M97"), StartsWith("5:1: M97 needs P"));
+  EXPECT_THAT(refusal("M97 P5", {}, "N5 G0 X1.\nM99\nN05 G0 X2.\nM99\n"),
+              StartsWith("5:1: there is more than one N5 in O1"));
+  EXPECT_THAT(refusal("N5 G0 X1.\nM97 P5", {}, "N5 M99\n"), HasSubstr("more than one N5"));
+  EXPECT_EQ(refusal("M97 P5", {}, "N5 M99\nO2\nN5 M99\n"), "taken") << "another program has its own";
   EXPECT_THAT(refusal("M97 P5 L0", {}, "N5 M99\n"), HasSubstr("L of M97"));
   EXPECT_THAT(refusal("M97 P5", {}, "N5 G0 X1.\n"), StartsWith("8:1: the file ends within N5"));
   EXPECT_THAT(refusal("M97 P5", {}, "N5 M97 P5\nM99\n"), HasSubstr("Does it call itself"));
