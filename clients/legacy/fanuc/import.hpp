@@ -17,7 +17,7 @@ using legacy::Error, legacy::Summary;
 [[nodiscard]] tl::expected<Summary, Error> import_program(std::string_view program, const Options& options,
                                                           Writer::Sink sink, Dialect dialect = Dialect::Fanuc);
 
-/// Whether Options::passed_m means anything of an M code: it is a builder's, or refused otherwise.
+/// Whether Options::passed_m may name an M code: it is not carried out whatever that says.
 [[nodiscard]] bool may_pass_over(int number, Dialect dialect) noexcept;
 /// Whether an M code of a Haas switches on an output that Options::outputs names.
 [[nodiscard]] bool switches_output(int number) noexcept;

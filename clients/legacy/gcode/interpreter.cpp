@@ -265,6 +265,7 @@ void Interpreter::act_once(Block& block) {
   if (!once) return;
   if (once->number == 280 || once->number == 300) {
     if (block.has_any("ABC") && !block.has_any("XYZ")) return;  // these alone are what the tool's axis is asked for
+    doubts_.reach_reference(block);
     return motions_.reference(block, *once);
   }
   if (once->number == 531 || once->number == 536) return turning_.align(block, once->place);

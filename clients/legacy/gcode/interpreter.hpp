@@ -59,6 +59,7 @@ class Interpreter {
   void leave_place_open(std::string_view why) { doubts_.leave_open(why); }
   /// Throws a Refusal where that is so.
   void require_place(std::size_t place) const { doubts_.require_none(place); }
+  void require_known_place(std::size_t place) const { doubts_.require_known(place); }
 
   /// What holds, but for what moves are, and so that it holds again. Both throw a Refusal.
   [[nodiscard]] State state(std::size_t place) const;

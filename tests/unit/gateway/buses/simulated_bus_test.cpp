@@ -3,13 +3,15 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <limits>
+
+#include "unit/gateway/buses/number_range.hpp"
 
 namespace rmac::gateway {
 namespace {
 
 using fieldbus::AxisPlantParameters;
 using fieldbus::SpindlePlantParameters;
+using test::expect_range, test::NumberRange;
 using testing::HasSubstr;
 
 sdk::ModuleChoice bus(std::map<std::string, std::vector<double>> numbers) {
@@ -135,32 +137,17 @@ TEST(SimulatedBus, RefusesWhatItCannotBe) {
   }
 }
 
-/// What a parameter takes (docs/simulated-bus.md).
-struct Range {
-  const char* name;
-  double least, most;
-};
-constexpr double kFar = std::numeric_limits<double>::infinity();
-
-/// Takes both ends of the range, and nothing beyond them, as `accepts` tells of a value.
-template <typename Accepts>
-void expect_range(const Range& range, const Accepts& accepts) {
-  EXPECT_TRUE(accepts(range.least)) << range.name;
-  EXPECT_TRUE(accepts(range.most)) << range.name;
-  EXPECT_FALSE(accepts(std::nextafter(range.least, -kFar))) << range.name;
-  EXPECT_FALSE(accepts(std::nextafter(range.most, kFar))) << range.name;
-  EXPECT_FALSE(accepts(std::numeric_limits<double>::quiet_NaN())) << range.name;
-}
-
 TEST(SimulatedBus, TakesWhatIsSaidOfAnAxisUpToItsBounds) {
-  for (const Range& range :
-       {Range{"rated_torque_nm", 1e-3, 1e4}, Range{"inertia_kg_m2", 1e-8, 1e3}, Range{"friction_nm", 0, 1e4},
-        Range{"gravity_nm", -1e4, 1e4}, Range{"negative_switch_turns", -1e6, 1e6},
-        Range{"positive_switch_turns", -1e6, 1e6}, Range{"mode", 8, 10},
-        Range{"counts_per_revolution", 1, 4294967296.0}, Range{"damping_ratio", 0, 1}, Range{"friction_at_load", 0, 1},
-        Range{"presliding_turns", 1e-5, 1}, Range{"cogging", 0, 1}, Range{"cogging_periods", 1, 1e4},
-        Range{"torque_ripple", 0, 1}, Range{"torque_ripple_periods", 1, 1e4}, Range{"encoder_noise_counts", 0, 1e6},
-        Range{"encoder_interpolation_counts", 0, 1e6}, Range{"encoder_signal_periods", 1, 1e6}}) {
+  for (const NumberRange& range :
+       {NumberRange{"rated_torque_nm", 1e-3, 1e4}, NumberRange{"inertia_kg_m2", 1e-8, 1e3},
+        NumberRange{"friction_nm", 0, 1e4}, NumberRange{"gravity_nm", -1e4, 1e4},
+        NumberRange{"negative_switch_turns", -1e6, 1e6}, NumberRange{"positive_switch_turns", -1e6, 1e6},
+        NumberRange{"mode", 8, 10}, NumberRange{"counts_per_revolution", 1, 4294967296.0},
+        NumberRange{"damping_ratio", 0, 1}, NumberRange{"friction_at_load", 0, 1},
+        NumberRange{"presliding_turns", 1e-5, 1}, NumberRange{"cogging", 0, 1}, NumberRange{"cogging_periods", 1, 1e4},
+        NumberRange{"torque_ripple", 0, 1}, NumberRange{"torque_ripple_periods", 1, 1e4},
+        NumberRange{"encoder_noise_counts", 0, 1e6}, NumberRange{"encoder_interpolation_counts", 0, 1e6},
+        NumberRange{"encoder_signal_periods", 1, 1e6}}) {
     expect_range(range, [&](double value) {
       return simulated_axes(bus({{"axes", {1}}, {"spindle", {-1}}, {range.name, {value}}})).has_value();
     });
@@ -186,10 +173,11 @@ TEST(SimulatedBus, TakesOtherNumbersUpToTheirBounds) {
 }
 
 TEST(SimulatedBus, TakesWhatIsSaidOfAPartUpToItsBounds) {
-  for (const Range& range :
-       {Range{"contact_surface_mm", -1e6, 1e6}, Range{"contact_stiffness_n_mm", 1e-3, 1e6},
-        Range{"contact_damping_n_s_mm", 0, 1e4}, Range{"contact_slope", -1, 1}, Range{"contact_wave_mm", 0, 100},
-        Range{"contact_wave_length_mm", 0.1, 1e5}, Range{"contact_pitch_mm", 0.1, 1000}}) {
+  for (const NumberRange& range :
+       {NumberRange{"contact_surface_mm", -1e6, 1e6}, NumberRange{"contact_stiffness_n_mm", 1e-3, 1e6},
+        NumberRange{"contact_damping_n_s_mm", 0, 1e4}, NumberRange{"contact_slope", -1, 1},
+        NumberRange{"contact_wave_mm", 0, 100}, NumberRange{"contact_wave_length_mm", 0.1, 1e5},
+        NumberRange{"contact_pitch_mm", 0.1, 1000}}) {
     expect_range(range, [&](double value) { return simulated_contact(bus({{range.name, {value}}})).has_value(); });
   }
 }

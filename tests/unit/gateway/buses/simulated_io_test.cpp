@@ -4,12 +4,14 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "unit/gateway/buses/number_range.hpp"
 
 namespace rmac::gateway {
 namespace {
 
+using test::expect_range, test::NumberRange;
 using testing::HasSubstr;
 using Numbers = std::map<std::string, std::vector<double>>;
 
@@ -49,23 +51,18 @@ TEST(SimulatedIo, HasNoProbeWithoutParameters) {
 }
 
 TEST(SimulatedIo, TakesEachNumberUpToItsBounds) {
-  struct Range {
-    const char* name;
-    std::size_t count;
-    double least, most;
-  };
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  for (const Range& range :
-       {Range{"probe_input", 1, 0, 63}, Range{"probe_ready", 1, 0, 63}, Range{"probe_stylus_mm", 3, -1e5, 1e5},
-        Range{"probe_radius_mm", 1, 0, 100}, Range{"probe_bounce_ms", 1, 0, 1000}, Range{"probe_switch_rpm", 1, 0, 1e5},
-        Range{"part_place", 6, -1e5, 1e5}, Range{"part_bore_mm", 5, -1e5, 1e5}, Range{"sphere_mm", 4, -1e5, 1e5}}) {
-    const auto takes = [&](double value) {
-      return refusal({{range.name, std::vector<double>(range.count, value)}}) == "taken";
-    };
-    EXPECT_TRUE(takes(range.least) && takes(range.most)) << range.name;
-    EXPECT_FALSE(takes(std::nextafter(range.least, -kFar)) || takes(std::nextafter(range.most, kFar))) << range.name;
-    EXPECT_THAT(refusal({{range.name, std::vector<double>(range.count + 1, 1)}}),
-                HasSubstr("\"" + std::string(range.name) + "\" takes " + std::to_string(range.count) + " number"));
+  const std::pair<NumberRange, std::size_t> parameters[]{
+      {{"probe_input", 0, 63}, 1},      {{"probe_ready", 0, 63}, 1},       {{"probe_stylus_mm", -1e5, 1e5}, 3},
+      {{"probe_radius_mm", 0, 100}, 1}, {{"probe_bounce_ms", 0, 1000}, 1}, {{"probe_switch_rpm", 0, 1e5}, 1},
+      {{"part_place", -1e5, 1e5}, 6},   {{"part_bore_mm", -1e5, 1e5}, 5},  {{"sphere_mm", -1e5, 1e5}, 4}};
+  for (const auto& [range, count] : parameters) {
+    const std::string name = range.name;
+    const std::size_t numbers = count;
+    expect_range(range, [&](double value) {
+      return refusal({{name, std::vector<double>(numbers, value)}}) == "taken";
+    });
+    EXPECT_THAT(refusal({{name, std::vector<double>(numbers + 1, 1)}}),
+                HasSubstr("\"" + name + "\" takes " + std::to_string(numbers) + " number"));
   }
   EXPECT_THAT(refusal({{"probe_input", {2.5}}}), HasSubstr("\"probe_input\" takes 1 number from 0 to 63"));
   EXPECT_THAT(refusal({{"probe_ready", {2.5}}}), HasSubstr("\"probe_ready\" takes 1 number from 0 to 63"));

@@ -112,6 +112,35 @@ TEST(HaasHoles, LeaveWhatComesNextToNameItsPlace) {
       << "a change of tool has its own place";
 }
 
+// Red where a stranger's way home from the last hole is refused, or a way down where nobody knows the place is not.
+TEST(HaasHoles, LetTheWayHomeGoOn) {
+  Options options;
+  options.reference_mm = {{0, 0, 100}};
+  const std::string holes = kBegun + "G70 I5. L2\nG80\n";
+  for (const std::string next : {"G53 G0 Z0\nG53 Y0", "G53 G0 Z0\nG53 X0 Y0\nG0 X5.", "G0 Z50.\nG28\nG90 G0 X5.",
+                                 "G91 G28 Z0\nG28 X0 Y0\nG90 G0 X5.", "G91 G28 Z0\nG28 Y0\nG90 X5. Y5.",
+                                 "G91 G28 Z0\nG28 Y0\nG90 X5.", "G53 G0 Y0\nG0 X5."})
+    EXPECT_EQ(refusal(holes + next, options), "taken") << next;
+  for (const std::string next :
+       {"G90 G28 Z-4.", "G91 G28 Z-1.", "G91 G28 Z0\nG28 Y0\nG90 Y5.", "G53 G0 Y0\nG0 Y5.", "G53 G0 X0\nG91 X5."})
+    EXPECT_THAT(refusal(holes + next, options), HasSubstr("behind the holes of G70 and G71")) << next;
+}
+
+TEST(HaasHoles, AreAboutNoPlaceThatATurnLeavesInDoubt) {
+  EXPECT_THAT(refusal(kBegun + "G68 X0 Y0 R90.\nG70 I5. L2"), HasSubstr("behind G68, G69"));
+  EXPECT_EQ(refusal(kBegun + "G68 X0 Y0 R90.\nG70 X1. Y1. I5. L2"), "taken");
+  Options options;
+  options.approach_mm = {{0, 0, 50}};
+  for (const std::string holes : {"", "G70 I5. L2\n"})
+    EXPECT_THAT(refusal(kBegun + holes + "G80\nG0 Z50.\nG68 X0 Y0 R90.\nT2 M6\nG43 H2\nG0 Z20.\nX5.", options),
+                HasSubstr("behind G68, G69"))
+        << "with holes before it as without";
+}
+
+TEST(HaasHoles, TakeAWayUpThatIsNoneButForRounding) {
+  EXPECT_EQ(refusal("G0 X7. Y3. Z1.1\nG91 G99 G81 Z-3. R-.8 F100. L0\nG90 G70 X0 Y0 I5. L2\nG80\nG0 Z.3"), "taken");
+}
+
 /// K is how often G73 comes up to R there, or the least peck beside I and J.
 TEST(HaasDrilling, IsRepeatedByLAlone) {
   EXPECT_EQ(drilled("G99 G81 Z-3. R1. F100. L0\nG91 X5. L3").size(), 3U);
