@@ -89,7 +89,7 @@ gcode::Maybe SystemVariables::code_in_force(int number) const {
 
 gcode::Maybe SystemVariables::tip(std::size_t axis, int number, std::size_t place) const {
   interpreter_.require_no_contour(place);
-  if (axis != 2) interpreter_.require_place(place);
+  if (axis != 2) interpreter_.doubts().require_none(place);
   if (interpreter_.coordinates().placement())
     refuse(place, fmt::format("#{} is where the tool is, and in turned, tilted or mirrored coordinates controls do not "
                               "mean the same by it; write G69, or G50.1, before it",

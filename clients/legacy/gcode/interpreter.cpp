@@ -111,7 +111,7 @@ After Interpreter::execute(Block& block, const Line& line) {
   act_on_names(block, options_, writer_);
   dwell(block);
   set_plane_and_units(block);
-  if (const auto& code = block.g(GGroup::Radius); code && code->number != kRadiusOff) require_place(code->place);
+  if (const auto& code = block.g(GGroup::Radius); code && code->number != kRadiusOff) doubts_.require_none(code->place);
   switch_compensation(block, options_, rules_, modes_, switches_, mover_, compensation_);
   set_length(block);
   if (const auto& system = block.g(GGroup::System)) {
@@ -121,7 +121,7 @@ After Interpreter::execute(Block& block, const Line& line) {
   set_control(block);
   set_distances(block);
   if (block.is_polar() && !(block.polar_radius() && block.polar_angle() && !modes_.incremental))
-    require_place(block.polar_radius() ? block.polar_radius()->place : block.polar_angle()->place);
+    doubts_.require_none(block.polar_radius() ? block.polar_radius()->place : block.polar_angle()->place);
   place_polar(block, modes_, {tip(0), tip(1)});
   turning_.act(block);
   if (const auto& turn = block.g(GGroup::Turn)) tool_axis_.settle(turn->place);

@@ -57,9 +57,7 @@ class Interpreter {
 
   /// Where the tool is in X and Y the program leaves open from now on, until it names both. `why` outlives it.
   void leave_place_open(std::string_view why) { doubts_.leave_open(why); }
-  /// Throws a Refusal where that is so.
-  void require_place(std::size_t place) const { doubts_.require_none(place); }
-  void require_known_place(std::size_t place) const { doubts_.require_known(place); }
+  [[nodiscard]] const Doubts& doubts() const { return doubts_; }
 
   /// What holds, but for what moves are, and so that it holds again. Both throw a Refusal.
   [[nodiscard]] State state(std::size_t place) const;

@@ -107,7 +107,7 @@ std::vector<gcode::Block> Cycle::written_out(const gcode::Options& options,
     refuse(code_.place,
            "around the place where the tool is: that is not known here; write a G0 to X, Y and Z before it");
   if (is_pocket() || !(find('X') != nullptr && find('Y') != nullptr && !interpreter.modes().incremental))
-    interpreter.require_known_place(code_.place);
+    interpreter.doubts().require_known(code_.place);
   if (interpreter.modes().plane.normal != 2) refuse(code_.place, "this cycle is taken in G17");
   return is_pocket() ? pocket(options, interpreter) : holes(interpreter);
 }
