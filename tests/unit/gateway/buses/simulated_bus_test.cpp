@@ -117,9 +117,9 @@ TEST(SimulatedBus, RefusesWhatItCannotBe) {
       {{{"axes", {0}}}, "\"axes\" must be one whole number"},
       {{{"axes", {2.5}}}, "\"axes\" must be one whole number"},
       {{{"axes", {2}}, {"spindle", {2}}}, "the spindle is axis 2, and there are 2"},
-      {{{"spindle_max_rpm", {0}}}, "\"spindle_max_rpm\" must be one number"},
+      {{{"spindle_max_rpm", {0}}}, "\"spindle_max_rpm\" must be one number from 1 to 1000000"},
       {{{"inertia_kg_m2", {1e-3}}}, "has 1 numbers; give one for each of the 8 axes"},
-      {{{"axes", {1}}, {"inertia_kg_m2", {0}}}, "0 of axis 0 must be"},
+      {{{"axes", {1}}, {"inertia_kg_m2", {0}}}, "0 of axis 0 must be 1e-08 to 1000"},
       {{{"axes", {1}}, {"spindle", {-1}}, {"stiffness_nm_rad", {15}}},
        "\"load_inertia_kg_m2\": 0 of axis 0 must be above 0"},
       {{{"axes", {1}}, {"spindle", {-1}}, {"stiffness_nm_rad", {15}}, {"load_inertia_kg_m2", {1}}},
@@ -205,7 +205,8 @@ TEST(SimulatedBus, HasAPartUnderTheToolWhenOneIsDescribed) {
 TEST(SimulatedBus, RefusesAPartThatCannotBe) {
   const std::vector<std::pair<std::map<std::string, std::vector<double>>, const char*>> cases{
       {{{"contact_surface", {1}}}, "\"contact_surface\" is not understood"},
-      {{{"contact_stiffness_n_mm", {0}}}, "\"contact_stiffness_n_mm\" must be one number"},
+      {{{"contact_stiffness_n_mm", {0}}}, "\"contact_stiffness_n_mm\" must be one number from 0.001 to 1000000"},
+      {{{"contact_slope", {0, 0}}}, "\"contact_slope\" must be one number from -1 to 1"},
       {{{"contact_axis", {8}}}, "\"contact_axis\" must be one whole number from 0 to 7"},
       {{{"contact_axis", {3}}}, "axis 3 is no servo axis"},
       {{{"contact_axis", {0}}}, "must be two axes"},
