@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <set>
 
 #include "unit/gateway/buses/number_range.hpp"
 
@@ -98,6 +99,24 @@ TEST(SimulatedBus, TakesHowAnAxisGivesWaySticksAndCogs) {
   EXPECT_NEAR(masses.damping_nm_s_rad / (2 * std::sqrt(15.8 * 9.3e-6 * 1.27e-5 / 2.2e-5)), 0.01, 1e-9);
 }
 
+TEST(SimulatedBus, GivesEachAxisNoiseOfItsOwnForEachSeed) {
+  std::set<std::uint64_t> seeds;
+  for (const double seed : {0.0, 1.0, 2147483647.0}) {
+    const auto axes = simulated_axes(bus({{"axes", {8}}, {"spindle", {-1}}, {"seed", {seed}}}));
+    ASSERT_TRUE(axes);
+    for (const auto& axis : *axes) seeds.insert(std::get<AxisPlantParameters>(axis).encoder.seed);
+  }
+  EXPECT_EQ(seeds.size(), 24U);
+}
+
+TEST(SimulatedBus, NamesAllThatItTakesWhereItIsToldSomethingElse) {
+  const auto axes = simulated_axes(bus({{"noise", {1}}}));
+  ASSERT_FALSE(axes);
+  for (const char* name : {"late_answers", "contact_along", "spindle_max_torque_nm", "contact_slope", "rated_torque_nm",
+                           "stiffness_nm_rad", "encoder_at_load"})
+    EXPECT_THAT(axes.error().message, HasSubstr(name));
+}
+
 TEST(SimulatedBus, AnswersLateWhereItIsSaid) {
   EXPECT_EQ(simulated_answer_delay(bus({})), 0);
   EXPECT_EQ(simulated_answer_delay(bus({{"late_answers", {8}}})), 8);
@@ -119,7 +138,7 @@ TEST(SimulatedBus, RefusesWhatItCannotBe) {
       {{{"axes", {2}}, {"spindle", {2}}}, "the spindle is axis 2, and there are 2"},
       {{{"spindle_max_rpm", {0}}}, "\"spindle_max_rpm\" must be one number from 1 to 1000000"},
       {{{"inertia_kg_m2", {1e-3}}}, "has 1 numbers; give one for each of the 8 axes"},
-      {{{"axes", {1}}, {"inertia_kg_m2", {0}}}, "0 of axis 0 must be 1e-08 to 1000"},
+      {{{"axes", {1}}, {"inertia_kg_m2", {0}}}, "\"inertia_kg_m2\": 0 of axis 0 must be 1e-08 to 1000"},
       {{{"axes", {1}}, {"spindle", {-1}}, {"stiffness_nm_rad", {15}}},
        "\"load_inertia_kg_m2\": 0 of axis 0 must be above 0"},
       {{{"axes", {1}}, {"spindle", {-1}}, {"stiffness_nm_rad", {15}}, {"load_inertia_kg_m2", {1}}},
