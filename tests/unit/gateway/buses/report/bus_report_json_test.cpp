@@ -33,9 +33,7 @@ TEST(BusReportJson, TellsAllOfACanBus) {
   bus.unsent = 2;
   bus.short_answers = 3;
   bus.health = {10, 11, 12, 13, 14, 15, 16, 17, 18, true, false};
-  bus.controller.errors.emplace();
-  bus.controller.errors->transmit = 21;
-  bus.controller.errors->receive = 22;
+  bus.controller.errors = fieldbus::CanController::ErrorCounters{21, 22};
   bus.nodes = {node()};
   const json told = to_json(fieldbus::FieldbusReport{{bus}, {}});
   EXPECT_EQ(told.at("lines"), json::array());
