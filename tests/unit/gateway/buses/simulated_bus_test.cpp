@@ -44,6 +44,7 @@ TEST(SimulatedBus, TakesWhatIsSaidOfEachAxis) {
   EXPECT_EQ(first.rated_torque_nm, 2);
   EXPECT_EQ(first.peak_torque_nm, 6);
   EXPECT_DOUBLE_EQ(first.inertia_kg_m2(), 1e-3);
+  EXPECT_DOUBLE_EQ(first.coulomb_nm, 0.1);
   EXPECT_DOUBLE_EQ(first.static_nm, 0.12);
   EXPECT_EQ(last.gravity_nm, -0.5);
   EXPECT_EQ(last.encoder.counts_per_revolution, 2000);
