@@ -271,8 +271,7 @@ void declare_rotary(CLI::App& app, Words& words) {
 void declare_fanuc(CLI::App& app, Words& words) {
   app.add_option("--whole-numbers", words.whole_numbers,
                  "what lengths and angles without a decimal point count in, in a fanuc or haas program: units (X10 is "
-                 "10 mm) or "
-                 "increments (X10 is 0.010 mm); refused unless given")
+                 "10 mm) or increments (X10 is 0.010 mm); refused unless given")
       ->check(CLI::IsMember({"units", "increments"}));
   app.add_option("--variable", words.variables,
                  "500=12.5: what the machine has in a common variable that a fanuc or haas program reads")
@@ -294,28 +293,29 @@ void declare_apt(CLI::App& app, Words& words) {
 
 /// The option that was given and is of another language than the file's, or nothing.
 std::optional<std::string> foreign_option(const CLI::App& app, const Words& words) {
+  /// A Haas takes what a Fanuc does, and what is its own.
   enum Languages { Rs274 = 1, Fanuc = 2, Apt = 4, Haas = 8 };
-  static constexpr std::array<std::pair<const char*, int>, 20> kOf{{{"--block-delete", Rs274 | Fanuc | Haas},
-                                                                    {"--tolerance", Rs274 | Fanuc | Haas},
-                                                                    {"--assume-g43", Rs274 | Fanuc | Haas},
-                                                                    {"--assume-end", Rs274 | Fanuc | Haas},
-                                                                    {"--offset", Rs274 | Fanuc | Haas},
+  static constexpr std::array<std::pair<const char*, int>, 20> kOf{{{"--block-delete", Rs274 | Fanuc},
+                                                                    {"--tolerance", Rs274 | Fanuc},
+                                                                    {"--assume-g43", Rs274 | Fanuc},
+                                                                    {"--assume-end", Rs274 | Fanuc},
+                                                                    {"--offset", Rs274 | Fanuc},
                                                                     {"--subroutines", Rs274},
                                                                     {"--output", Rs274 | Haas},
                                                                     {"--input", Rs274},
-                                                                    {"--second-reference-point", Rs274 | Fanuc | Haas},
-                                                                    {"--output-limit", Rs274 | Fanuc | Haas},
-                                                                    {"--tool-diameter", Rs274 | Fanuc | Haas},
-                                                                    {"--whole-numbers", Fanuc | Haas},
-                                                                    {"--variable", Fanuc | Haas},
-                                                                    {"--rotary", Rs274 | Fanuc | Haas},
-                                                                    {"--rotary-centre", Rs274 | Fanuc | Haas},
-                                                                    {"--rotary-way", Rs274 | Fanuc | Haas},
-                                                                    {"--rotary-diameter", Rs274 | Fanuc | Haas},
-                                                                    {"--pass-over", Rs274 | Fanuc | Haas},
+                                                                    {"--second-reference-point", Rs274 | Fanuc},
+                                                                    {"--output-limit", Rs274 | Fanuc},
+                                                                    {"--tool-diameter", Rs274 | Fanuc},
+                                                                    {"--whole-numbers", Fanuc},
+                                                                    {"--variable", Fanuc},
+                                                                    {"--rotary", Rs274 | Fanuc},
+                                                                    {"--rotary-centre", Rs274 | Fanuc},
+                                                                    {"--rotary-way", Rs274 | Fanuc},
+                                                                    {"--rotary-diameter", Rs274 | Fanuc},
+                                                                    {"--pass-over", Rs274 | Fanuc},
                                                                     {"--multax", Apt},
                                                                     {"--circle-axis", Apt}}};
-  const int language = words.is_apt() ? Apt : words.is_haas() ? Haas : words.is_fanuc() ? Fanuc : Rs274;
+  const int language = words.is_apt() ? Apt : words.is_haas() ? Fanuc | Haas : words.is_fanuc() ? Fanuc : Rs274;
   for (const auto& [name, languages] : kOf) {
     if ((languages & language) != 0 || app.count(name) == 0) continue;
     return fmt::format("{} is not of {}, which {} is taken as; --dialect says otherwise", name, words.dialect,

@@ -53,17 +53,6 @@ void keep_overrides(Block& block) {
   if (on == (code->number == kAdaptiveFeed)) refuse(code->place, fmt::format("M{}: {}", code->number, kOverridesStay));
 }
 
-/// Of M0, M1, M5 and M9. Throws a Refusal.
-void require_no_stop_beside_hole(const Block& block) {
-  for (const MGroup group : {MGroup::Stop, MGroup::CoolantOff, MGroup::Spindle}) {
-    const auto& code = block.m(group);
-    if (!code || (group == MGroup::Spindle && code->number != kSpindleOff)) continue;
-    refuse(code->place,
-           fmt::format("M{} beside a hole acts above it, before it is drilled; write it in a block of its own",
-                       code->number));
-  }
-}
-
 After save_or_restore(const Block& block, const Code& code) {
   if (block.codes() > 1) refuse(code.place, fmt::format("M{} has a block of its own; write two", code.number));
   block.require_all_used();
@@ -71,6 +60,14 @@ After save_or_restore(const Block& block, const Code& code) {
 }
 
 }  // namespace
+
+void require_nothing_behind(const Block& block, std::string_view what) {
+  for (const MGroup group : {MGroup::Stop, MGroup::CoolantOff, MGroup::Spindle}) {
+    const auto& code = block.m(group);
+    if (!code || (group == MGroup::Spindle && code->number != kSpindleOff)) continue;
+    refuse(code->place, fmt::format("M{} beside {}; write it in a block of its own", code->number, what));
+  }
+}
 
 Interpreter::Interpreter(const Options& options, const Rules& rules, Writer& writer)
     : options_(options),
@@ -310,7 +307,7 @@ void Interpreter::move_by(Block& block, int code, std::size_t place) {
            "a cycle goes by where the tool is; end cutter radius compensation by G40 and a straight move before it");
   if (modes_.inverse_time)
     refuse(place, "a canned cycle has a way of many moves, and G93 a time of one; write G94 before it");
-  if (rules_.stops_behind_motion) require_no_stop_beside_hole(block);
+  if (rules_.stops_behind_motion) require_nothing_behind(block, "a hole acts above it, before it is drilled");
   drilling_.drill(block, code, before, place);
 }
 

@@ -33,6 +33,9 @@ struct State {
   Switches::State switches;
 };
 
+/// Throws a Refusal where M0, M1, M2, M5, M9 or M30 stands beside `what`, which would be carried out behind it.
+void require_nothing_behind(const Block& block, std::string_view what);
+
 /// Carries out blocks, each in the order that the report's table gives to what stands in it.
 class Interpreter {
  public:

@@ -28,21 +28,11 @@ gcode::Block motion(int tenfold, std::size_t place) {
   return block;
 }
 
-/// What acts behind a motion would act before these.
-void require_nothing_behind(const gcode::Block& block) {
-  constexpr int kSpindleOff = 5;
-  for (const auto group : {gcode::MGroup::Stop, gcode::MGroup::CoolantOff, gcode::MGroup::Spindle}) {
-    const auto& code = block.m(group);
-    if (!code || (group == gcode::MGroup::Spindle && code->number != kSpindleOff)) continue;
-    refuse(code->place, fmt::format("M{} beside a cycle; write it in a block of its own", code->number));
-  }
-}
-
 }  // namespace
 
 Cycle::Cycle(const gcode::Code& code, gcode::Block& block, const gcode::Interpreter& interpreter)
     : code_(code), motion_before_(interpreter.modes().motion) {
-  require_nothing_behind(block);
+  gcode::require_nothing_behind(block, "a cycle");
   if (const auto& once = block.g(gcode::GGroup::Once))
     refuse(once->place,
            fmt::format("{} beside {}; write two blocks", gcode::g_name(once->number), gcode::g_name(code.number)));

@@ -13,9 +13,8 @@ namespace {
 constexpr int kFirstArc = 20, kFirstCycle = 730;
 constexpr double kSamePlace_mm = 1e-7;
 constexpr const char* kBehindTurns =
-    "behind G68, G69, G51.1 and G50.1 a straight move stands first that names all axes which they turn, under G90; "
-    "write "
-    "it before this";
+    "behind G68, G69, G51.1 and G50.1 a straight move stands first that names all axes which they turn, under "
+    "G90; write it before this";
 
 }  // namespace
 
