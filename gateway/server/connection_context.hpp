@@ -25,6 +25,8 @@ class Peers {
   [[nodiscard]] virtual std::optional<std::string> fast_watcher_beside(std::uint64_t who) const = 0;
   /// Tells clients of something that is no report of the controller.
   virtual void announce(Event::Kind kind, std::string message) = 0;
+  /// Cuts off the greediest, should all together hold more memory than there is for them. Not from a loop over them.
+  virtual void bound_memory() = 0;
   /// Client `who` is gone.
   virtual void forget(std::uint64_t who) = 0;
 };

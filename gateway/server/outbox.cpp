@@ -8,11 +8,19 @@ namespace {
 
 constexpr std::size_t kBuffersPerWrite = 64;
 
+/// A text that grew while it was written has room for up to its own size again. Worth a copy where lines are long.
+constexpr std::size_t kLongLine = 4096;
+
+std::size_t memory_of(const std::string& line) {
+  return sizeof(line) + line.capacity();
+}
+
 }  // namespace
 
 void Outbox::add(std::string line, Time now) {
   line += '\n';
-  bytes_ += line.size();
+  if (line.size() > kLongLine) line.shrink_to_fit();
+  bytes_ += memory_of(line);
   if (lines_.empty()) last_progress_ = now;
   lines_.push_back(std::move(line));
 }
@@ -29,7 +37,7 @@ std::vector<asio::const_buffer> Outbox::begin_write() {
 void Outbox::written(Time now) {
   last_progress_ = now;
   for (; writing_ != 0; --writing_) {
-    bytes_ -= lines_.front().size();
+    bytes_ -= memory_of(lines_.front());
     lines_.pop_front();
   }
 }

@@ -22,7 +22,7 @@ class Outbox {
   void written(Time now);
 
   [[nodiscard]] bool empty() const noexcept { return lines_.empty(); }
-  /// That wait or are being written.
+  /// Memory of the lines that wait or are being written.
   [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
   /// How long nothing was read of what waits.
   [[nodiscard]] Time::duration standstill(Time now) const noexcept { return now - last_progress_; }

@@ -60,14 +60,13 @@ class Server : private Peers {
  private:
   void welcome(Listeners::Socket socket, const char* what, std::string peer);
   void end_silent_lease();
-  /// Cuts off who takes most, until what all take is within its limit.
-  void bound_memory();
   void cut_off(const Guest& greediest);
   /// Lets every connection carry out what waits there.
   void pump();
 
   void overtake(std::uint64_t who, const std::string& name, const Request& stop, std::uint64_t position) override;
   [[nodiscard]] std::optional<std::string> fast_watcher_beside(std::uint64_t who) const override;
+  void bound_memory() override;
   void forget(std::uint64_t who) override;
 
   ServerOptions options_;

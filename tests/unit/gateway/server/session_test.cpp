@@ -13,6 +13,7 @@ struct OnePeer : Peers {
   void overtake(std::uint64_t, const std::string&, const Request&, std::uint64_t) override {}
   std::optional<std::string> fast_watcher_beside(std::uint64_t) const override { return fast; }
   void announce(Event::Kind kind, std::string message) override { told.emplace_back(kind, std::move(message)); }
+  void bound_memory() override {}
   void forget(std::uint64_t) override {}
   std::optional<std::string> fast;
   std::vector<std::pair<Event::Kind, std::string>> told;
