@@ -6,7 +6,7 @@
 #include "planner/laid_path.hpp"
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/time_law.hpp"
-#include "time_law/feed_rule.hpp"
+#include "time_law/speed_bound.hpp"
 
 namespace rmac {
 

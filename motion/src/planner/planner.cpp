@@ -321,7 +321,9 @@ struct Planner::Impl {
     plans.collect();
     if (plans.refused(progress)) return false;
     if (!on_path() || !plans.acknowledged(progress)) return true;
-    const double s = base()->state_at(now_s(*base(), progress.cycle)).s;
+    double s = base()->state_at(now_s(*base(), progress.cycle)).s;
+    // What ends where the machine comes to rest is done when it rests, as the follower counts it.
+    if (!plans.ended(progress)) s = std::min(s, base()->end_s() - 2 * kSamePlace);
     path().travelled(s, base()->law.front().start.s);
     if (route.on_detour() || s < kFarthest_mm) return true;
     const double by = std::floor(s);

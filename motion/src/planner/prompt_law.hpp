@@ -5,8 +5,8 @@
 
 #include "planner/published_plan.hpp"
 #include "rmac/motion/limits.hpp"
-#include "time_law/feed_rule.hpp"
 #include "time_law/path_view.hpp"
+#include "time_law/speed_bound.hpp"
 
 namespace rmac {
 

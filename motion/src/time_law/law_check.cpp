@@ -18,20 +18,28 @@ using Demand = std::array<double, kSamples>;
 
 struct Peak {
   double largest = 0;
+  double at = 0;          ///< the sample where it is, and part of the way to the next
   double unevenness = 0;  ///< largest third difference: what a parabola does not see
 };
 
 /// The peak over every `stride`th sample. Between them the curve is taken for the parabola through three neighbours, so
 /// that a peak between samples counts.
 Peak peak_of(const Demand& demand, std::size_t stride) {
-  Peak peak{std::max(std::abs(demand.front()), std::abs(demand.back())), 0};
+  Peak peak;
+  const auto take = [&peak](double value, double at) {
+    if (!(std::abs(value) > peak.largest)) return;
+    peak.largest = std::abs(value);
+    peak.at = at;
+  };
+  take(demand.front(), 0);
+  take(demand.back(), kSamples - 1);
   double bend_before = 0;
   for (std::size_t i = stride; i + stride < kSamples; i += stride) {
     const double here = demand[i], rise = (demand[i + stride] - demand[i - stride]) / 2;
     const double bend = demand[i + stride] - 2 * here + demand[i - stride];
     const bool inside = here > 0 ? bend < 0 : bend > 0;
-    const double vertex = inside && std::abs(rise) < std::abs(bend) ? here - rise * rise / (2 * bend) : here;
-    peak.largest = std::max(peak.largest, std::abs(vertex));
+    const double ahead = inside && std::abs(rise) < std::abs(bend) ? -rise / bend : 0;
+    take(here + ahead * rise / 2, static_cast<double>(i) + ahead * static_cast<double>(stride));
     if (i > stride) peak.unevenness = std::max(peak.unevenness, std::abs(bend - bend_before));
     bend_before = bend;
   }
@@ -53,13 +61,18 @@ class PieceCheck {
       per_limit_[j] = {1 / joints[j].max_speed, 1 / joints[j].max_acceleration, 1 / joints[j].max_jerk};
   }
 
+  struct Worst {
+    double part = 0;             ///< of the bound that is exceeded most, or nearest to be
+    std::optional<double> peak;  ///< where between the piece's ends a joint's acceleration or jerk is over its bound
+  };
+
   /// Samples are halved until what lies between them cannot matter: five, nine, seventeen.
-  double worst(const LawPiece& piece) {
+  Worst worst(const LawPiece& piece) {
     end_ = piece.at(piece.duration);
     others_ = 0;
     for (std::size_t stride = 4;; stride /= 2) {
       for (std::size_t i = 0; i < kSamples; i += stride) {
-        if ((stride == 4 || i % (2 * stride) != 0) && !sample(piece, i)) return kInfinity;
+        if ((stride == 4 || i % (2 * stride) != 0) && !sample(piece, i)) return {kInfinity, {}};
       }
       double worst = others_;
       bool sure = true;
@@ -70,12 +83,26 @@ class PieceCheck {
           sure = sure && peak.largest + kDoubt * peak.unevenness <= 1;
         }
       }
-      if (!std::isfinite(worst)) return kInfinity;
-      if (sure || stride == 1) return worst;
+      if (!std::isfinite(worst)) return {kInfinity, {}};
+      if (sure) return {worst, {}};
+      if (stride == 1) return {worst, peak_within(piece)};
     }
   }
 
  private:
+  /// From all samples.
+  [[nodiscard]] std::optional<double> peak_within(const LawPiece& piece) const {
+    Peak most{1, 0, 0};
+    for (std::size_t j = 0; j < joint_count_; ++j) {
+      for (const Demand* demand : {&acceleration_[j], &jerk_[j]}) {
+        const Peak peak = peak_of(*demand, 1);
+        if (peak.largest > most.largest) most = peak;
+      }
+    }
+    if (!(most.at > 0) || !(most.at < kSamples - 1)) return std::nullopt;
+    return piece.at(piece.duration * most.at / (kSamples - 1)).s;
+  }
+
   bool sample(const LawPiece& piece, std::size_t i) {
     const bool first = i == 0, last = i + 1 == kSamples;
     const PathState at = first  ? piece.start
@@ -137,8 +164,10 @@ LawExcess check_law(const PathView& path, const std::vector<JointLimits>& joints
   excess.by_piece.reserve(law.size());
   PieceCheck check(path, joints, feed);
   for (const LawPiece& piece : law) {
-    excess.by_piece.push_back(check.worst(piece));
-    excess.worst = std::max(excess.worst, excess.by_piece.back());
+    const auto [part, peak] = check.worst(piece);
+    excess.by_piece.push_back(part);
+    excess.peaks.push_back(peak);
+    excess.worst = std::max(excess.worst, part);
     if (!std::isfinite(excess.worst)) break;
   }
   return excess;

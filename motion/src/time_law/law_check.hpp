@@ -1,11 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/time_law.hpp"
-#include "time_law/feed_rule.hpp"
 #include "time_law/path_view.hpp"
+#include "time_law/speed_bound.hpp"
 
 namespace rmac {
 
@@ -14,6 +15,8 @@ namespace rmac {
 struct LawExcess {
   double worst = 0;  ///< 1 is just at a limit; infinite where the law means nothing
   std::vector<double> by_piece;
+  /// A piece: where between its ends a joint's acceleration or jerk is most over its bound; nothing where none is.
+  std::vector<std::optional<double>> peaks;
 };
 
 /// Without `feed` the programmed feed is no bound: what is faster than a feed that was lowered must brake first.

@@ -19,16 +19,22 @@ bool apart(double before, double s) {
   return s > before + rounding(s);
 }
 
-/// Places that the grid must hold: its ends, and between them segment ends and breaks.
-std::vector<double> fixed_places(const PathView& path, double begin, double end) {
+/// Places that the grid must hold: its ends, and between them segment ends and breaks, and those that are to be kept.
+std::vector<double> fixed_places(const PathView& path, double begin, double end, std::span<const double> kept) {
   std::vector<double> fixed{begin};
+  auto next = kept.begin();
   const auto keep = [&](double s) {
     if (apart(fixed.back(), s) && s < end) fixed.push_back(s);
   };
+  const auto keep_path = [&](double s) {
+    for (; next != kept.end() && apart(*next, s); ++next) keep(*next);
+    keep(s);
+  };
   for (std::size_t i = path.find(begin, 1); i <= path.find(end, -1); ++i) {
-    keep(path.start(i));
-    for (const double s : path.segment(i).curve().breaks()) keep(path.start(i) + s);
+    keep_path(path.start(i));
+    for (const double s : path.segment(i).curve().breaks()) keep_path(path.start(i) + s);
   }
+  keep_path(end);
   fixed.push_back(end);
   return fixed;
 }
@@ -90,8 +96,9 @@ std::vector<double> with_middles(std::span<const double> nodes) {
 
 }  // namespace
 
-std::vector<double> law_grid(const PathView& path, const GridEnd& begin, const GridEnd& end, double coarsest) {
-  const std::vector<double> fixed = fixed_places(path, begin.s, end.s);
+std::vector<double> law_grid(const PathView& path, const GridEnd& begin, const GridEnd& end, double coarsest,
+                             std::span<const double> kept) {
+  const std::vector<double> fixed = fixed_places(path, begin.s, end.s, kept);
   GeometrySteps geometry(path, begin.s, end.s, coarsest);
   const auto step_from = [&](double s) {
     return std::min({coarsest, begin.step + kGrading * (s - begin.graded_from),

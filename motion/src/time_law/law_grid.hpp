@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "time_law/path_view.hpp"
@@ -15,8 +16,9 @@ struct GridEnd {
 };
 
 /// Path lengths from one end to the other on which a time law is made: segment ends and breaks are among them, steps
-/// are as fine as the geometry asks and no longer than `coarsest`. At least 6.
+/// are as fine as the geometry asks and no longer than `coarsest`; places `kept` (ascending) are among them too. At
+/// least 6.
 [[nodiscard]] std::vector<double> law_grid(const PathView& path, const GridEnd& begin, const GridEnd& end,
-                                           double coarsest);
+                                           double coarsest, std::span<const double> kept);
 
 }  // namespace rmac

@@ -11,6 +11,9 @@ constexpr std::size_t kReach = 48;
 /// The square of a speed is capped by no less than this part of itself at a time: what goes beyond is not its doing.
 constexpr double kLeastCap = 0.98;
 
+/// As a part of the interval: cuts that are nearer say the same.
+constexpr double kSamePart = 0.05;
+
 template <typename T>
 std::vector<T> slice(const std::vector<T>& all, std::size_t first, std::size_t last) {
   return {all.begin() + static_cast<std::ptrdiff_t>(first), all.begin() + static_cast<std::ptrdiff_t>(last)};
@@ -49,6 +52,11 @@ LawProblem part_of(const LawProblem& whole, const std::vector<double>& coefficie
   part.rise = slice(whole.rise, first, last);
   part.fall = slice(whole.fall, first, last);
   part.tightening = slice(whole.tightening, first, last);
+  for (const LawCut& cut : whole.cuts) {
+    if (cut.interval < first || cut.interval >= last) continue;
+    part.cuts.push_back(cut);
+    part.cuts.back().interval -= first;
+  }
   part.max_acceleration = whole.max_acceleration;
   part.max_jerk = whole.max_jerk;
   part.begin = state_at(whole, coefficients, first);
@@ -57,6 +65,21 @@ LawProblem part_of(const LawProblem& whole, const std::vector<double>& coefficie
 }
 
 }  // namespace
+
+bool cut_at(LawProblem& problem, const PathView& path, std::size_t interval, double s) {
+  const double part = (s - problem.nodes[interval]) / problem.step(interval);
+  const auto says_it = [&](const LawCut& cut) {
+    return cut.interval == interval && std::abs(cut.part - part) < kSamePart;
+  };
+  if (!(part > 0) || !(part < 1) || std::any_of(problem.cuts.begin(), problem.cuts.end(), says_it)) return false;
+  JointPoint point;
+  if (path.derivatives(s, 1, point) != KinematicsStatus::Ok) return false;
+  LawCut& cut = problem.cuts.emplace_back(LawCut{interval, part, {}});
+  for (std::size_t order = 1; order <= 3; ++order)
+    cut.derivatives.insert(cut.derivatives.end(), point.d[order].begin(),
+                           point.d[order].begin() + static_cast<std::ptrdiff_t>(problem.joint_count));
+  return true;
+}
 
 std::vector<IntervalRange> mend_law(LawProblem& problem, const std::vector<double>& excess,
                                     std::vector<double>& coefficients) {

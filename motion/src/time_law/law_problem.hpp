@@ -19,6 +19,13 @@ struct JointDerivatives {
   const double* d3;
 };
 
+/// A place within an interval where the joints' bounds are kept as they are at both of its ends.
+struct LawCut {
+  std::size_t interval = 0;
+  double part = 0;                  ///< of the way from its left node to the right one
+  std::vector<double> derivatives;  ///< d1 d2 d3, each joint_count values
+};
+
 /// The optimisation that finds a time law (docs/derivations/time-law.md): q(s) = (ds/dt)² as a C1 quadratic spline over
 /// a grid, fastest under linear bounds on q and q' (feed, joint speed and acceleration, path acceleration) and the
 /// bound on joint jerk. Both end states are given: rest itself is not a spline (q grows like s^(4/3) there) and is
@@ -30,8 +37,9 @@ struct LawProblem {
   std::vector<double> speed_cap;    ///< an interval: bound of q, mm²/s²
   std::vector<double> rise,
       fall;  ///< an interval: bounds of path acceleration, mm/s²; infinity where the joints alone bound it
-  std::vector<double>
-      tightening;  ///< an interval: joint bounds are multiplied by it; 1 at first, less where the check found excess
+  std::vector<double> tightening;                  ///< an interval: joint bounds are multiplied by it; 1 at first,
+                                                   ///< less where the check found excess
+  std::vector<LawCut> cuts;                        ///< where a check found more between two nodes than at them
   std::vector<double> max_acceleration, max_jerk;  ///< a joint
   PathState begin, end;
   bool draft = false;  ///< of a path that is still being shaped: both end states are free, and jerk has its price told

@@ -50,20 +50,43 @@ void joint_acceleration_rows(const LawProblem& p, const LawBasis& b, const Joint
   }
 }
 
+/// A joint's jerk is this times √q, as a part of its bound.
+double jerk_weight(const LawProblem& p, std::size_t k, std::size_t j, const LawBasis& b, const JointDerivatives& d,
+                   std::size_t i) {
+  return (d.d3[j] * b.q[i] + 1.5 * d.d2[j] * b.dq[i] + 0.5 * d.d1[j] * b.ddq[i]) / (p.max_jerk[j] * p.tightening[k]);
+}
+
 void jerk_rows(const LawProblem& p, std::size_t k, const LawBasis& left, const LawBasis& right,
                std::vector<Rows>& all) {
   static_assert(kLanes == 2, "a lane for each end of the interval");
   const JointDerivatives at_left = p.at(k, false), at_right = p.at(k, true);
   for (std::size_t j = 0; j < p.joint_count; ++j) {
     if (!moves_on(p, k, j)) continue;
-    const double scale = 1 / (p.max_jerk[j] * p.tightening[k]);
-    const auto weight = [&](const LawBasis& b, const JointDerivatives& d, std::size_t i) {
-      return (d.d3[j] * b.q[i] + 1.5 * d.d2[j] * b.dq[i] + 0.5 * d.d1[j] * b.ddq[i]) * scale;
-    };
     Rows& rows = all.emplace_back();
     rows.low = all_lanes(-1);
-    for (std::size_t i = 0; i < 3; ++i) rows.w[i] = Lanes{weight(left, at_left, i), weight(right, at_right, i)};
+    for (std::size_t i = 0; i < 3; ++i)
+      rows.w[i] = Lanes{jerk_weight(p, k, j, left, at_left, i), jerk_weight(p, k, j, right, at_right, i)};
   }
+}
+
+RowGroup cut_rows(const LawProblem& p, const LawCut& cut, std::vector<Rows>& all) {
+  const std::size_t k = cut.interval;
+  const LawBasis b = basis_within(p, k, cut.part);
+  const double* const d1 = cut.derivatives.data();
+  const JointDerivatives d{d1, d1 + p.joint_count, d1 + 2 * p.joint_count};
+  RowGroup group{k, all.size()};
+  RowCollector rows(all);
+  joint_acceleration_rows(p, b, d, p.tightening[k], rows);
+  group.jerk = all.size();
+  for (std::size_t i = 0; i < 3; ++i) group.q[i] = all_lanes(b.q[i]);
+  for (std::size_t j = 0; j < p.joint_count; j += kLanes) {
+    Rows& jerk = all.emplace_back();
+    jerk.low = all_lanes(-1);
+    for (std::size_t lane = 0; lane < kLanes && j + lane < p.joint_count; ++lane) {
+      for (std::size_t i = 0; i < 3; ++i) jerk.w[i][lane] = jerk_weight(p, k, j + lane, b, d, i);
+    }
+  }
+  return group;
 }
 
 }  // namespace
@@ -78,9 +101,10 @@ bool moves_on(const LawProblem& p, std::size_t k, std::size_t j) noexcept {
 LawRows::LawRows(const LawProblem& p) {
   const std::size_t n = p.intervals();
   all.reserve(n * ((p.joint_count + 2) / kLanes + 1 + p.joint_count));
-  intervals.resize(n + 1);
+  groups.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
-    intervals[k].linear = all.size();
+    groups[k].interval = k;
+    groups[k].linear = all.size();
     RowCollector rows(all);
     // Nothing bounds the coefficients from below: the travel time does, which goes to infinity there.
     if (p.draft || (k > 0 && k + 1 < n)) rows.add({0, 1, 0}, -p.speed_cap[k], p.speed_cap[k]);
@@ -91,11 +115,12 @@ LawRows::LawRows(const LawProblem& p) {
       path_acceleration_row(left, std::min(p.rise[k], p.rise[k - 1]), std::min(p.fall[k], p.fall[k - 1]), rows);
       joint_acceleration_rows(p, left, p.at(k, false), std::min(p.tightening[k], p.tightening[k - 1]), rows);
     }
-    intervals[k].jerk = all.size();
-    for (std::size_t i = 0; i < 3; ++i) intervals[k].q[i] = Lanes{left.q[i], right.q[i]};
+    groups[k].jerk = all.size();
+    for (std::size_t i = 0; i < 3; ++i) groups[k].q[i] = Lanes{left.q[i], right.q[i]};
     jerk_rows(p, k, left, right, all);
   }
-  intervals[n].linear = all.size();
+  for (const LawCut& cut : p.cuts) groups.push_back(cut_rows(p, cut, all));
+  groups.push_back({n, all.size()});
 }
 
 }  // namespace rmac

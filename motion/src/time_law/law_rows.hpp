@@ -11,8 +11,8 @@ namespace rmac {
 /// low <= phi(c) <= 1 on the three coefficients of one interval, two such rows at once, with slack and dual variable
 /// of both sides. Most of the time of a plan is spent going through these, so what belongs together lies together, both
 /// sides share one gradient, and rows of an interval share the coefficients that they touch.
-/// phi is gradient·c, or for jerk (w·c)·√q, eq. 10, with q at the interval's ends: a joint's jerk at the left and
-/// right.
+/// phi is gradient·c, or for jerk (w·c)·√q, eq. 10: that of a joint at both ends of the interval, or of two joints at a
+/// place within it.
 struct Rows {
   LaneTriple w{}, gradient{};
   Lanes low{};
@@ -26,9 +26,10 @@ struct Rows {
   Side above, below;
 };
 
-/// Where an interval's rows lie among all: the linear ones, then those of jerk, up to the next interval's; and its q at
-/// both ends as weights of the coefficients.
-struct IntervalRows {
+/// Rows of one interval that lie together among all: the linear ones, then those of jerk, up to the next group's; and q
+/// where these are, as weights of the coefficients.
+struct RowGroup {
+  std::size_t interval = 0;
   std::size_t linear = 0, jerk = 0;
   LaneTriple q{};
 };
@@ -39,7 +40,7 @@ struct IntervalRows {
 /// What bounds a law: everything that `LawProblem` says, but for the end states, which fix two coefficients each.
 struct LawRows {
   std::vector<Rows> all;
-  std::vector<IntervalRows> intervals;  ///< and one behind the last
+  std::vector<RowGroup> groups;  ///< of each interval, of each cut, and one behind the last
 
   explicit LawRows(const LawProblem& problem);
 };

@@ -27,6 +27,16 @@ LawBasis basis(const LawProblem& p, std::size_t k, bool right) noexcept {
   return result;
 }
 
+LawBasis basis_within(const LawProblem& p, std::size_t k, double part) noexcept {
+  LawBasis b = basis(p, k, false);
+  const double ds = part * p.step(k);
+  for (std::size_t i = 0; i < 3; ++i) {
+    b.q[i] += ds * (b.dq[i] + ds / 2 * b.ddq[i]);
+    b.dq[i] += ds * b.ddq[i];
+  }
+  return b;
+}
+
 /// A profile not far from what the bounds allow: at each place no faster than curvature and its change would permit
 /// at constant speed, and from place to place growing no faster than a part of the acceleration permits; then
 /// smoothed, because a kink is jerk.

@@ -18,6 +18,9 @@ struct LawBasis {
 };
 [[nodiscard]] LawBasis basis(const LawProblem& problem, std::size_t k, bool right) noexcept;
 
+/// And within it.
+[[nodiscard]] LawBasis basis_within(const LawProblem& problem, std::size_t k, double part) noexcept;
+
 /// A first guess of the coefficients between the ends: a profile not far from what the bounds allow.
 void guess_coefficients(const LawProblem& problem, std::vector<double>& coefficients);
 

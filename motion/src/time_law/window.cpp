@@ -10,6 +10,7 @@
 #include "time_law/law_problem.hpp"
 #include "time_law/rest_end.hpp"
 #include "time_law/speed_bound.hpp"
+#include "time_law/window_begin.hpp"
 
 namespace rmac {
 namespace {
@@ -52,83 +53,10 @@ bool fill(LawProblem& problem, const PathView& path, const std::vector<JointLimi
       v = std::min(v, speed_bound(segment, point, joints, feed));
     }
     problem.speed_cap[k] = v * v;
-    problem.rise[k] = or_unbounded(segment.demand().accel_rise_mm_s2);
-    problem.fall[k] = or_unbounded(segment.demand().accel_fall_mm_s2);
+    problem.rise[k] = or_unbounded(segment.demand().accel_rise_mm_s2) * kLawMargin;
+    problem.fall[k] = or_unbounded(segment.demand().accel_fall_mm_s2) * kLawMargin;
   }
   return true;
-}
-
-/// Where the state at the beginning is faster than the bounds (an override was lowered), they give way as far as
-/// braking needs.
-void yield_to_begin(LawProblem& problem) {
-  double acceleration = kInfinity, jerk = kInfinity;
-  for (std::size_t k = 0; k < std::min<std::size_t>(problem.intervals(), 40); ++k) {
-    const JointDerivatives d = problem.at(k, false);
-    for (std::size_t j = 0; j < problem.joint_count; ++j) {
-      acceleration = std::min(acceleration, 0.25 * problem.max_acceleration[j] / std::max(std::abs(d.d1[j]), 1e-9));
-      jerk = std::min(jerk, 0.25 * problem.max_jerk[j] / std::max(std::abs(d.d1[j]), 1e-9));
-    }
-    acceleration = std::min(acceleration, 0.5 * problem.fall[k]);
-  }
-  // First the acceleration is taken back to zero and to braking at constant jerk, then it is kept.
-  PathState state = problem.begin;
-  const double dt = std::max(1e-4, problem.begin.v / acceleration / 4000);
-  double s = state.s, v = state.v, a = state.a;
-  for (std::size_t k = 0; k < problem.intervals() && v > 0; ++k) {
-    problem.speed_cap[k] = std::max(problem.speed_cap[k], v * v * 1.02 + 2 * std::max(a, 0.0) * problem.step(k));
-    while (s < problem.nodes[k + 1] && v > 0) {
-      a = std::max(a - jerk * dt, -acceleration);
-      v += a * dt;
-      s += std::max(v, 0.0) * dt;
-    }
-  }
-}
-
-/// The square of the speed along a piece of law, and its slopes: q, q'/2 and q''/2.
-struct SquaredSpeed {
-  double q = 0, a = 0, bend = 0;
-};
-
-/// At path length s; nothing behind the end of the piece.
-std::optional<SquaredSpeed> squared_speed(const LawPiece& piece, double s) {
-  const PathState& begin = piece.start;
-  if (piece.kind == LawPiece::Kind::Linear) {
-    const double ds = s - begin.s;
-    return SquaredSpeed{begin.v * begin.v + ds * (2 * begin.a + ds * piece.slope), begin.a + piece.slope * ds,
-                        piece.slope};
-  }
-  if (s > piece.at(piece.duration).s) return std::nullopt;
-  double low = 0, high = piece.duration;
-  for (int i = 0; i < 30; ++i) {
-    const double middle = 0.5 * (low + high);
-    (piece.at(middle).s < s ? low : high) = middle;
-  }
-  const PathState at = piece.at(high);
-  return SquaredSpeed{at.v * at.v, at.a, 0};
-}
-
-/// Lets the next law start from the one before. Its state lies at the edge of what is viable, so the first stretch may
-/// use most of the margin that the law before left; and what that law had is the first guess (eq. 8). Where a feed
-/// gives way to that law (`yields`), it does so as far as the law went.
-void resume_from(LawProblem& problem, const std::vector<LawPiece>& before, bool yields) {
-  constexpr double kRelaxed = 0.9997 / kLawMargin;
-  constexpr double kEasing = 0.1;  ///< of the window
-  const double span = problem.nodes.back() - problem.nodes.front();
-  problem.travelled_before.assign(problem.intervals() + 2, 0.0);
-  std::size_t piece = 0;
-  for (std::size_t k = 0; k < problem.intervals(); ++k) {
-    if (problem.nodes[k] - problem.nodes.front() < 0.25 * span) problem.tightening[k] = kRelaxed;
-    const double h = problem.step(k), middle = problem.nodes[k] + h / 2;
-    while (piece + 1 < before.size() && before[piece + 1].start.s <= middle) ++piece;
-    const auto at = squared_speed(before[piece], middle);
-    if (!at || piece + 1 == before.size()) continue;
-    // A little slower, which is inside the bounds; but not at once, which would be a jerk.
-    const double into = std::min((middle - problem.nodes.front()) / (kEasing * span), 1.0);
-    const double part = 1 - 0.005 * into * into * (3 - 2 * into);
-    problem.travelled_before[k + 1] = std::max(0.0, part * (at->q - h * h / 4 * at->bend));
-    const double most = at->q + h * std::abs(at->a) + h * h / 4 * std::abs(at->bend);
-    if (yields) problem.speed_cap[k] = std::max(problem.speed_cap[k], 1.01 * most);
-  }
 }
 
 /// Grid steps of this length resolve the ramps to full speed.
@@ -167,8 +95,11 @@ double moving_start_step(const PathView& path, const std::vector<JointLimits>& j
   return room > 0 ? std::clamp(0.5 * room / begin.a, std::min(1e-4, step), step) : step;
 }
 
-/// Solves the problem, and tightens it where the law is found in excess, until it passes its check. The law begins at
-/// time `t0`.
+/// The excess of a piece that got a cut: it is solved again, and bounds at its nodes hardly need to be tighter.
+constexpr double kCut = 1 + 1e-9;
+
+/// Solves the problem, and cuts and tightens it where the law is found in excess, until it passes its check. The law
+/// begins at time `t0`.
 std::optional<std::vector<LawPiece>> checked_law(LawProblem& problem, const PathView& path,
                                                  const std::vector<JointLimits>& joints, const FeedRule* feed,
                                                  double t0, int tightenings) {
@@ -184,6 +115,9 @@ std::optional<std::vector<LawPiece>> checked_law(LawProblem& problem, const Path
       const LawExcess found = check_law(path, joints, {law.begin() + from, law.begin() + to}, feed);
       if (!std::isfinite(found.worst)) return std::nullopt;
       std::copy(found.by_piece.begin(), found.by_piece.end(), excess.begin() + from);
+      for (std::size_t i = 0; i < found.peaks.size(); ++i) {
+        if (found.peaks[i] && cut_at(problem, path, begin + i, *found.peaks[i])) excess[begin + i] = kCut;
+      }
     }
     if (*std::max_element(excess.begin(), excess.end()) <= 1.0) return law;
     changed = mend_law(problem, excess, coefficients);
@@ -221,14 +155,14 @@ std::optional<std::vector<LawPiece>> law_of_window(const PathView& path, const s
   problem.end = last->inner();
   if (!(problem.end.s > problem.begin.s)) return std::nullopt;
   const double start_step = first ? first->length : moving_start_step(path, joints, window, coarsest);
+  std::vector<double> kept;
+  if (window.before != nullptr && !from_rest)
+    kept = nodes_kept(*window.before, problem.begin.s, problem.end.s, start_step);
   problem.nodes =
-      law_grid(path, {problem.begin.s, s_begin, start_step}, {problem.end.s, s_end, last->length}, coarsest);
+      law_grid(path, {problem.begin.s, s_begin, start_step}, {problem.end.s, s_end, last->length}, coarsest, kept);
   if (!fill(problem, path, joints, window.feed)) return std::nullopt;
   problem.work_left = window.work_left;
-  const bool yields = problem.begin.v * problem.begin.v > problem.speed_cap[0] * (1 + 1e-5);
-  if (yields) yield_to_begin(problem);
-  if (window.before != nullptr && !from_rest) resume_from(problem, *window.before, yields && window.same_feed);
-
+  const bool yields = window.before != nullptr && !from_rest && go_on_from(problem, window);
   const FeedRule* const programmed = yields ? nullptr : &window.feed;
   std::vector<LawPiece> ends{last->piece()};
   if (first) ends.push_back(first->piece());

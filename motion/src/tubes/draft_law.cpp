@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "curves/vector.hpp"
-#include "time_law/feed_rule.hpp"
 #include "time_law/law_spline.hpp"
+#include "time_law/speed_bound.hpp"
 
 namespace rmac {
 namespace {

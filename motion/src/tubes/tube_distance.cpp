@@ -34,19 +34,19 @@ class TubeCheck {
 
   /// From the spline's stretch of a line to the polyline: its bounds on pieces that are halved until they suffice.
   [[nodiscard]] double from_spline(std::size_t line) const {
-    double largest = 0;
-    const double most = most_ - polyline_.off_mm[line];
+    Stretch stretch{line, most_ - polyline_.off_mm[line]};
     double from = std::max(polyline_.places[line], knots_[quintic::kDegree]);
     const double to = polyline_.places[line + 1];
     while (from < to) {
       const std::size_t span = quintic::span_of(knots_, points_.size(), from);
       const double end = std::min(to, knots_[span + 1]);
-      double bend = 0;
-      for (std::size_t i = span - quintic::kDegree; i + 2 <= span; ++i) bend = std::max(bend, bends_[i]);
-      largest = std::max(largest, on_piece({line, most, bend}, from, end, at(from), at(end), kMostHalvings));
+      stretch.bend = 0;
+      for (std::size_t i = span - quintic::kDegree; i + 2 <= span; ++i)
+        stretch.bend = std::max(stretch.bend, bends_[i]);
+      measure(stretch, {from, at(from)}, {end, at(end)}, kMostHalvings);
       from = end;
     }
-    return largest;
+    return stretch.bound;
   }
 
   /// From a vertex to the spline, at the place where that passes it.
@@ -68,32 +68,45 @@ class TubeCheck {
     return quintic::value(quintic::basis(knots_, points_.size(), place), points_);
   }
 
-  /// A piece is within h²/8 max |S''| of its chord, and distance to a line of the polyline is a convex function: on the
-  /// chord no more than at its ends.
-  struct Piece {
+  /// The spline along one line of the polyline, and what is known of its distance.
+  struct Stretch {
     std::size_t line = 0;
-    double most = 0;
-    double bend = 0;  ///< max |S''|
+    double most = 0;   ///< what suffices
+    double bend = 0;   ///< max |S''| of the span that is looked at
+    double seen = 0;   ///< the largest distance of a place
+    double bound = 0;  ///< no place is further away
   };
-  [[nodiscard]] double on_piece(const Piece& piece, double from, double to, const Vector& a, const Vector& b,
-                                int halvings) const {
-    const std::size_t line = piece.line;
-    double bound = 1e30;
-    if (line == 0 && polyline_.previous) {
-      const Vector &start = *polyline_.previous, &end = polyline_.vertices[0];
-      bound = std::max(distance_to_line(a, start, end), distance_to_line(b, start, end));
+  struct Place {
+    double at = 0;
+    Vector point;
+  };
+
+  /// A piece is within h²/8 max |S''| of its chord, and distance to a line of the polyline is a convex function: on the
+  /// chord no more than at its ends. Halved until that suffices, or hardly exceeds the largest distance seen: how far
+  /// out the spline is says how much narrower the tube has to be.
+  void measure(Stretch& stretch, const Place& a, const Place& b, int halvings) const {
+    constexpr double kHardly = 1.002;
+    const std::size_t line = stretch.line;
+    double chord = 1e30, nearest_a = 1e30, nearest_b = 1e30;
+    const auto take = [&](const Vector& start, const Vector& end) {
+      const double at_a = distance_to_line(a.point, start, end), at_b = distance_to_line(b.point, start, end);
+      chord = std::min(chord, std::max(at_a, at_b));
+      nearest_a = std::min(nearest_a, at_a);
+      nearest_b = std::min(nearest_b, at_b);
+    };
+    if (line == 0 && polyline_.previous) take(*polyline_.previous, polyline_.vertices[0]);
+    for (std::size_t k = line > 0 ? line - 1 : 0; k <= line + 1 && k < polyline_.lines(); ++k)
+      take(polyline_.vertices[k], polyline_.vertices[k + 1]);
+    const double length = b.at - a.at, bound = chord + length * length / 8 * stretch.bend;
+    stretch.seen = std::max({stretch.seen, nearest_a, nearest_b});
+    if (halvings == 0 || bound <= std::max(stretch.most, kHardly * stretch.seen)) {
+      stretch.bound = std::max(stretch.bound, bound);
+      return;
     }
-    for (std::size_t k = line > 0 ? line - 1 : 0; k <= line + 1 && k < polyline_.lines(); ++k) {
-      const Vector &start = polyline_.vertices[k], &end = polyline_.vertices[k + 1];
-      bound = std::min(bound, std::max(distance_to_line(a, start, end), distance_to_line(b, start, end)));
-    }
-    bound += (to - from) * (to - from) / 8 * piece.bend;
-    if (bound <= piece.most || halvings == 0) return bound;
-    const double middle = 0.5 * (from + to);
-    const Vector m = at(middle);
-    const double left = on_piece(piece, from, middle, a, m, halvings - 1);
-    if (left > piece.most) return left;
-    return std::max(left, on_piece(piece, middle, to, m, b, halvings - 1));
+    const double middle = 0.5 * (a.at + b.at);
+    const Place m{middle, at(middle)};
+    measure(stretch, a, m, halvings - 1);
+    measure(stretch, m, b, halvings - 1);
   }
 
   const std::vector<double>& knots_;

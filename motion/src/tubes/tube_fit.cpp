@@ -12,7 +12,7 @@ namespace {
 constexpr double kSpansALine = 3;
 /// Where a spline leaves the tolerance between its samples, the tube is made narrower.
 constexpr int kTubeTrials = 3;
-constexpr double kFarOut = 1.2;
+constexpr double kFarOut = 2;
 
 }  // namespace
 

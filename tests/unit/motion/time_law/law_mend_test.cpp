@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "time_law/law_problem.hpp"
 
 namespace rmac {
@@ -39,6 +41,41 @@ TEST(LawMend, GoesSlowerWhereAJointIsFasterBetweenNodesThanAtThem) {
   EXPECT_LE(spline_start(problem, solution.coefficients, kFast).q, 99.8 * 99.8);
   EXPECT_GT(spline_start(problem, solution.coefficients, kFast).q, 99 * 99);
   EXPECT_GT(spline_start(problem, solution.coefficients, kFast + 40).q, 99.85 * 99.85) << "there alone";
+}
+
+/// A joint's jerk within an interval, as a part of its bound (eq. 3).
+double jerk_at(const LawProblem& problem, const LawCut& cut, const std::vector<double>& coefficients) {
+  const SplineStart start = spline_start(problem, coefficients, cut.interval);
+  const double ds = cut.part * problem.step(cut.interval);
+  const double q = start.q + ds * (start.dq + ds / 2 * start.ddq), dq = start.dq + ds * start.ddq;
+  const double* const d = cut.derivatives.data();
+  return std::abs(d[2] * q + 1.5 * d[1] * dq + 0.5 * d[0] * start.ddq) * std::sqrt(q) / problem.max_jerk[0];
+}
+
+TEST(LawMend, KeepsTheBoundsAtACutAsAtANode) {
+  // At 100 mm/s, d3 alone is twice the bound of jerk there.
+  constexpr double kThird = 0.02;
+  LawProblem free = cruise(), cut = cruise();
+  const LawCut here{60, 0.3, {1, 0, kThird}};
+  cut.cuts.push_back(here);
+  const LawSolution without = solve_law(free, {}), with = solve_law(cut, {});
+  ASSERT_TRUE(without.converged);
+  ASSERT_TRUE(with.converged);
+  EXPECT_GT(jerk_at(free, here, without.coefficients), 1.9);
+  EXPECT_LE(jerk_at(cut, here, with.coefficients), 1 + 1e-6);
+  EXPECT_GT(jerk_at(cut, here, with.coefficients), 0.95) << "and no slower than that asks for";
+  EXPECT_GT(spline_start(cut, with.coefficients, 10).q, 0.99 * spline_start(free, without.coefficients, 10).q);
+}
+
+TEST(LawMend, TakesACutAlongWhereAPartIsSolvedAgain) {
+  LawProblem problem = cruise();
+  problem.cuts.push_back({70, 0.3, {1, 0, 0.02}});
+  LawSolution solution = solve_law(problem, {});
+  ASSERT_TRUE(solution.converged);
+  std::vector<double> excess(problem.intervals(), 0.99);
+  excess[72] = 1.002;
+  ASSERT_FALSE(mend_law(problem, excess, solution.coefficients).empty());
+  EXPECT_LE(jerk_at(problem, problem.cuts.front(), solution.coefficients), 1 + 1e-6);
 }
 
 }  // namespace
