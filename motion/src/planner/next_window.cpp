@@ -76,9 +76,11 @@ WindowEnd next_window_end(LaidPath& path, const std::vector<JointLimits>& joints
     if (path.rest_after(i) || enough) found = WindowEnd{path.end(i), path.rest_after(i)};
   }
   WindowEnd end = found.value_or(WindowEnd{path.end(), false, 0, path.can_supply()});
-  if (limit_s && *limit_s <= end.s) end = {*limit_s, true};
-  if (end.s - s > 1.5 * reach) end = {s + reach, false};
-  if (end.s > s_many) end = {s_many, false};
+  end.in_work = end.in_work || path.work() != work;
+  const auto sooner = [&end](double at, bool hard) { end = {at, hard, 0, end.in_work}; };
+  if (limit_s && *limit_s <= end.s) sooner(*limit_s, true);
+  if (end.s - s > 1.5 * reach) sooner(s + reach, false);
+  if (end.s > s_many) sooner(s_many, false);
   end.planned_again = reach / ramps * kRampsPlannedAgain;
   return end;
 }

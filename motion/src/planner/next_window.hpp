@@ -19,7 +19,7 @@ struct WindowEnd {
   double s = 0;
   bool hard = false;
   double planned_again = 0;  ///< length before the end that a following window plans again
-  bool in_work = false;      ///< the path goes on behind the end, and is laid on with the next call
+  bool in_work = false;      ///< this call took the work of laying path that a step may do; the next one may know more
 };
 
 /// Where the window that begins at s must or may end: at a demanded rest, at `limit_s`, at the end of the path, or
