@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -26,6 +27,10 @@ struct PublishedPlan {
   double commit_t = 0;  ///< up to here a following window keeps it
 
   [[nodiscard]] double end_s() const;
+  /// The first cycle from this one on in which it may be followed: it may not have begun.
+  [[nodiscard]] std::int64_t followed_from(std::int64_t cycle) const noexcept {
+    return std::max(cycle, plan->start_cycle);
+  }
   /// The state at t; at rest at the end from there on.
   [[nodiscard]] PathState state_at(double t) const;
   /// The time at which the first piece of law begins at or behind path length s; else the end.
