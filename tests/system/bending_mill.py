@@ -1,4 +1,4 @@
-"""DMACXYZ with other axes than the tree gives it: rigid ones, or of two masses with resonances of one's own."""
+"""Machines with other axes than the tree gives them: rigid ones, or (DMACXYZ) of two masses with resonances of one's own."""
 
 import contextlib
 import json
@@ -10,25 +10,36 @@ from appliance import Appliance
 RAD_PER_MM = 2 * np.pi / 5
 MOTOR, TABLE = 0.93e-5, 1.27e-5  # kg·m² at the shaft, on either side of the spring
 NOISY = {"torque_ripple": [0.01] * 8, "encoder_noise_counts": [1] * 8, "encoder_interpolation_counts": [2] * 8}
-STIFF = {"X": [1550, 140000, 11.1], "Y": [1820, 164000, 13.0], "Z": [1195, 107500, 8.5]}  # Kp = 44.8 m, Ki = 90 Kp, Kd = 0.32 m
+BENDING = ("stiffness_nm_rad", "load_inertia_kg_m2", "presliding_turns", "cogging", *NOISY)
+# What suits rigid axes, by the bus that they are on: Kp = 44.8 m, Ki = 90 Kp, Kd = 0.32 m, and what feedforward knows of them.
+STIFF = {
+    "sim0": {"X": [1550, 140000, 11.1], "Y": [1820, 164000, 13.0], "Z": [1195, 107500, 8.5]},
+    "sugino0": {"X": [10610, 955100, 75.8, 0.03948, 0.2369, 94.25, 0], "Y": [12730, 1146000, 90.96, 0.03948, 0.2842, 94.25, 0],
+                "Z": [9197, 827700, 65.69, 0.03948, 0.2053, 75.4, 119.4], "A": [1900, 171000, 13.57, 0.01414, 0.04241, 9, 0],
+                "C": [1583, 142500, 11.31, 0.01414, 0.03534, 9, 0]},
+}
 
 
 def rigid(device, **parameters):
-    """Its axes, as these parameters of the simulated bus have them, with PID for such and nothing else."""
-    device["DigitalControlInterface"]["Parameters"] = parameters
+    """Its axes, as these parameters of the simulated bus have them beside what is no bending, with loops for such and nothing else."""
+    bus = device["DigitalControlInterface"]["Parameters"]
+    for name in BENDING:
+        bus.pop(name, None)
+    bus.update(parameters)
     for actuator in device["Actuators"]:
         actuator.pop("Cogging", None)
     for data in device["Joints"] + device["HeldJoints"]:
-        data["Gains"] = STIFF[data["Name"]]
-        data["ServoControlLaw"]["Parameters"] = {"rest_band": 0.002, "load": 117.7 if data["Name"] == "Z" else 0}
+        data["Gains"] = gains = STIFF[device["Actuators"][0]["Bus"]][data["Name"]]
+        of_pid = {"rest_band": 0.002, "load": 117.7 if data["Name"] == "Z" else 0}
+        data["ServoControlLaw"]["Parameters"] = of_pid if len(gains) == 3 else {"lead_s": 0.0017}
         for filters in ("Resonances", "LowPass"):
             data.pop(filters, None)
 
 
 @contextlib.contextmanager
-def device_of(appliance):
-    """That mill's data in the tree of its own that the appliance has; what becomes of it is written there."""
-    file = next(appliance.tree.glob("*/*/DMACXYZ/device.json"))
+def device_of(appliance, name="DMACXYZ"):
+    """That machine's data in the tree of its own that the appliance has; what becomes of it is written there."""
+    file = next(appliance.tree.glob(f"*/*/{name}/device.json"))
     device = json.loads(file.read_text())
     yield device
     file.write_text(json.dumps(device))

@@ -1,9 +1,12 @@
 """`rmac simulate --dynamics`: how far the tool bends, and where it chatters, as a user sees it."""
 
+import json
 import math
+import shutil
 import unittest
 
-from appliance import pose
+from appliance import BUILD, pose
+from bending_mill import rigid
 from test_collisions import LENGTH, request, to
 from test_forces import BEYOND, MATERIAL, TEETH, TOP, TOOL, SimulatedCut, slot
 
@@ -20,6 +23,20 @@ def holder(sticks_out):
 
 
 class Chatter(SimulatedCut):
+    """On rigid axes: what gives way is the tool."""
+
+    def setUp(self):
+        super().setUp()
+        self.tree = self.folder / "drivers"
+        shutil.copytree(BUILD / "drivers", self.tree)
+        file = self.tree / "mill/5-axis/SuginoXYZAC/device.json"
+        device = json.loads(file.read_text())
+        rigid(device)
+        file.write_text(json.dumps(device))
+
+    def run_rmac(self, requests, *words, **options):
+        return super().run_rmac(requests, "--device-tree", self.tree, *words, **options)
+
     def dynamics(self, depth, rpm=RPM, **shape):
         report, done = self.report(slot(depth, FEED * rpm / RPM, rpm), "--dynamics", tool=tool(**shape))
         return report["dynamics"], done

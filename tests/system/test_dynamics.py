@@ -64,11 +64,11 @@ class Dynamics(unittest.TestCase):
         self.assertEqual(len(done.stdout.splitlines()), 1, done.stderr)
         return json.loads(done.stdout)["dynamics"], done
 
-    def tree_with(self, change):
-        """The device tree with DMACXYZ changed."""
+    def tree_with(self, change, machine=MILL):
+        """The device tree with that machine changed."""
         tree = self.folder / "drivers"
         shutil.copytree(BUILD / "drivers", tree)
-        file = tree / MILL / "device.json"
+        file = tree / machine / "device.json"
         device = json.loads(file.read_text())
         change(device)
         file.write_text(json.dumps(device))
@@ -110,11 +110,12 @@ class Dynamics(unittest.TestCase):
         stiff = TOOL | {"Shape": TOOL["Shape"] | {"Modes": [{"Frequency": 9000, "DampingRatio": 0.1, "Stiffness": 1e7}]}}
         (self.folder / "tools/SuginoXYZAC.json").write_text(json.dumps({"Mounted": 7, "Tools": [stiff]}))
         told = {}
+        tree = self.tree_with(rigid, "mill/5-axis/SuginoXYZAC")  # whose loops are stiff enough to keep to the path as the cut begins
         for name, setup in (("air", None), ("cut", STOCK)):
-            words = []
+            words = ["--device-tree", tree]
             if setup:
                 (self.folder / "setup.json").write_text(json.dumps(setup))
-                words = ["--setup", self.folder / "setup.json"]
+                words += ["--setup", self.folder / "setup.json"]
             program = write(self.folder / "slot.rmac", slot(4, 600, 3000))
             # Without the set-up its part frame is not in force: the same place by hand.
             if not setup:

@@ -1,9 +1,11 @@
 """A measuring client on the wire: the measuring machine alone, and over the mill that is loaded."""
 
 import json
+import math
 import unittest
 
 from appliance import Appliance, pose, wait_for_rest
+from bending_mill import device_of, rigid
 from client import Refused
 
 # Of drivers/cmm/3-axis/CMM/device.json: the block's top, the tip's radius.
@@ -13,7 +15,12 @@ COUNT = 10 / 1048576  # mm
 
 class Measuring(unittest.TestCase):
     def setUp(self):
-        self.appliance = self.enterContext(Appliance())
+        """Where the measuring machine's axes are rigid: a hit is as exact as its time."""
+        self.appliance = Appliance(own_tree=True)
+        for machine in ("CMM", "SuginoXYZAC"):
+            with device_of(self.appliance, machine) as device:
+                rigid(device)
+        self.enterContext(self.appliance)
 
     def operator(self, machine):
         client = self.appliance.operator(machine)
@@ -111,6 +118,27 @@ class Measuring(unittest.TestCase):
         client.call("RMAC_CAM.MoveToPathTarget", MoveID=3, TargetFrame=pose(15, 0, -10))
         state = wait_for_rest(client)
         self.assertAlmostEqual(state["pose"][2], -10, delta=0.01)
+
+
+class MeasuringAsItComes(unittest.TestCase):
+    def test_hits_are_off_by_what_friction_bends_and_no_more_than_the_machine_may_be(self):
+        """Its encoders are the motors': what slides behind the springs is not where they say."""
+        appliance = self.enterContext(Appliance())
+        device = json.loads(next(appliance.tree.glob("*/*/CMM/device.json")).read_text())
+        bus = device["DigitalControlInterface"]["Parameters"]
+        sliding = 0.5 * bus["friction_nm"][2] / bus["stiffness_nm_rad"][2] * 10 / (2 * math.pi)  # mm, by the guides' half of Z's
+        client = appliance.operator("CMM")
+        client.call("subscribe", topics=["events"])
+        client.call("RMAC_CAM.CycleStart", Mode="AUTOMATIC")
+        for move, x in enumerate((15, 12, -12, -15), 1):
+            client.call("RMAC_CAM.MoveToXYZ", MoveID=2 * move, x=x, y=0, z=-12, Speed=20)
+            wait_for_rest(client)
+            client.call("RMAC_CAM.AutoMeasure", MoveID=2 * move + 1, x=x, y=0, z=TOP + RADIUS, Speed=20)
+            hit = client.wait_note("events", lambda event: event["kind"] == "Hit")
+            wait_for_rest(client)
+            low = TOP + RADIUS - hit["pose"][2]
+            self.assertLess(low, device["RepeatabilityTolerance"])
+            self.assertAlmostEqual(low, sliding, delta=3e-4)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ import numpy as np
 
 import test_chatter
 from appliance import BUILD
+from bending_mill import rigid
 from test_collisions import SETUP, cut, request, to
 from test_forces import STOCK, slot
 from view_page import BETWEEN_LOOKS_MM, TABLE_LINK, ViewCase, at, chain, frame, moves_at_random, program, shown
@@ -26,19 +27,29 @@ def value(plot, times):
 
 
 class ViewOfDynamics(ViewCase):
+    """On rigid axes, whose encoders tell to a count where they are: what a page has is held to the record of those."""
+
+    def setUp(self):
+        super().setUp()
+        self.tree = self.folder / "drivers"
+        shutil.copytree(BUILD / "drivers", self.tree)
+        self.change(rigid)
+
+    def change(self, by):
+        file = self.tree / "mill/5-axis/SuginoXYZAC/device.json"
+        device = json.loads(file.read_text())
+        by(device)
+        file.write_text(json.dumps(device))
+
+    def run_rmac(self, *words, **options):
+        return super().run_rmac("--device-tree", self.tree, *words, **options)
+
     def seen(self, requests, change=None, **options):
         """The report, the page's data and the record, of a machine whose description was changed."""
         self.write(requests)
-        words = ["--dynamics", "--record", self.folder / "record.csv"]
         if change:
-            tree = self.folder / "drivers"
-            shutil.copytree(BUILD / "drivers", tree)
-            file = tree / "mill/5-axis/SuginoXYZAC/device.json"
-            device = json.loads(file.read_text())
-            change(device)
-            file.write_text(json.dumps(device))
-            words += ["--device-tree", tree]
-        report, data = self.view(*words, **options)
+            self.change(change)
+        report, data = self.view("--dynamics", "--record", self.folder / "record.csv", **options)
         return report, data, np.genfromtxt(self.folder / "record.csv", delimiter=",", names=True)
 
     @staticmethod

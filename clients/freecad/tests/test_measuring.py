@@ -1,6 +1,5 @@
 """Places on a part, and a real daemon that touches them on its simulated measuring machine (drivers/cmm/3-axis/CMM)."""
 
-import json
 import math
 import os
 import sys
@@ -13,6 +12,7 @@ sys.path.append(os.path.join(os.environ["RMAC_SOURCE"], "tests/system"))
 import numpy as np
 import Part
 from appliance import Appliance
+from bending_mill import device_of, rigid
 from FreeCAD import Vector
 from rmac_freecad.master import deviations, fit_placement
 from rmac_freecad.measuring import MeasuringRefused, Place, measure, places_on
@@ -98,11 +98,11 @@ class UnderWayTest(unittest.TestCase):
 class MeasureTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
+        """The measuring machine on rigid axes, on which a hit is as exact as its time."""
         appliance = Appliance(own_tree=True)
-        file = appliance.tree / "cmm/3-axis/CMM/device.json"
-        device = json.loads(file.read_text())
-        device["DigitalIOInterface"]["Parameters"]["part_bore_mm"][4] = 0  # open above, so that a tip over the bore touches nothing
-        file.write_text(json.dumps(device))
+        with device_of(appliance, "CMM") as device:
+            rigid(device)
+            device["DigitalIOInterface"]["Parameters"]["part_bore_mm"][4] = 0  # open above, so that a tip over the bore touches nothing
         cls.appliance = cls.enterClassContext(appliance)
 
     def setUp(self):
