@@ -225,6 +225,7 @@ void Connection::pump() {
       if (std::exchange(pump_posted_, true)) return;
       asio::post(socket_.get_executor(), [self = shared_from_this()] {
         self->pump_posted_ = false;
+        if (self->phase_ == Phase::Closed) return;
         self->context_.peers.bound_memory();  // a round of all clients' long answers is longer than a tick
         self->pump();
       });

@@ -133,6 +133,7 @@ void Server::bound_memory() {
   std::vector<Guest> guests;
   std::size_t held = 0;
   for (const auto& [id, connection] : connections_) held += guests.emplace_back(connection->guest()).held_bytes;
+  if (held <= options_.memory_limit_bytes) return;
   std::ranges::sort(guests, std::greater{}, &Guest::held_bytes);
   for (const Guest& greediest : guests) {
     if (held <= options_.memory_limit_bytes) return;

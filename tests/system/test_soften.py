@@ -33,9 +33,9 @@ class Soften(TuningTest):
                     for joint in (0, 2):
                         client.call("RMAC_CAM.JogJoint", JntNum=joint, Distance=way)
                         wait_for_rest(client)
-                while client.state()["state"] == "Running":  # It follows the last motion by a cycle or two.
-                    pass
-                self.assertEqual(client.state()["state"], "Idle")
+                        while client.state()["state"] == "Running":  # It follows the motion by a cycle or two.
+                            pass
+                        self.assertEqual(client.state()["state"], "Idle")
 
     def test_a_lower_resonance_takes_a_softer_beginning(self):
         """As of a machining centre with gains for rigid axes: what swings still is said so, and the next step holds."""

@@ -133,10 +133,11 @@ gateway::MoveNow CollisionWatch::cut_under_way(const gateway::CycleSample& sampl
     last_cut_.move.id = queue_.front().id;
     return last_cut_.move;
   }
+  if (last_cut_.ended_s < 0 || !stays_or_leaves(last_cut_.ended_at, sample.pose_set.tip)) return planned;
   const double rpm = std::abs(sample.spindle_rpm.front());
   const double settling_s = kSettling_s + (rpm > 0 ? std::min(kSettlingTurns * 60 / rpm, kLongestSettling_s) : 0);
-  const bool settles = last_cut_.ended_s >= 0 && sample.t_s - last_cut_.ended_s < settling_s;
-  return settles && stays_or_leaves(last_cut_.ended_at, sample.pose_set.tip) ? last_cut_.move : planned;
+  // Who dwells where a cut ended is on no way: what axes cut there that stick and slip about it is the cut's still.
+  return !sample.moving || sample.t_s - last_cut_.ended_s < settling_s ? last_cut_.move : planned;
 }
 
 void CollisionWatch::cycle(const gateway::CycleSample& sample, int line, gateway::Controller& controller,

@@ -85,7 +85,7 @@ class PieceCheck {
       }
       if (!std::isfinite(worst)) return {kInfinity, {}};
       if (sure) return {worst, {}};
-      if (stride == 1) return {worst, peak_within(piece)};
+      if (stride == 1) return {worst, worst > 1 ? peak_within(piece) : std::nullopt};
     }
   }
 
@@ -162,6 +162,7 @@ LawExcess check_law(const PathView& path, const std::vector<JointLimits>& joints
                     const FeedRule* feed) {
   LawExcess excess;
   excess.by_piece.reserve(law.size());
+  excess.peaks.reserve(law.size());
   PieceCheck check(path, joints, feed);
   for (const LawPiece& piece : law) {
     const auto [part, peak] = check.worst(piece);

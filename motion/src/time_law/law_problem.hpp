@@ -19,7 +19,7 @@ struct JointDerivatives {
   const double* d3;
 };
 
-/// A place within an interval where the joints' bounds are kept as they are at both of its ends.
+/// A place within an interval where the joints' bounds of acceleration and jerk are kept as at both of its ends.
 struct LawCut {
   std::size_t interval = 0;
   double part = 0;                  ///< of the way from its left node to the right one
@@ -35,11 +35,12 @@ struct LawProblem {
   std::vector<double> nodes;        ///< N + 1 ascending path lengths
   std::vector<double> derivatives;  ///< an interval: left d1 d2 d3, right d1 d2 d3, each joint_count values
   std::vector<double> speed_cap;    ///< an interval: bound of q, mm²/s²
+  std::vector<double> fastest;      ///< an interval: bound of q by the joints' speeds alone; empty in a draft
   std::vector<double> rise,
       fall;  ///< an interval: bounds of path acceleration, mm/s²; infinity where the joints alone bound it
-  std::vector<double> tightening;                  ///< an interval: joint bounds are multiplied by it; 1 at first,
-                                                   ///< less where the check found excess
-  std::vector<LawCut> cuts;                        ///< where a check found more between two nodes than at them
+  std::vector<double> tightening;  ///< an interval: bounds of joints' acceleration and jerk are multiplied by it; about
+                                   ///< 1 at first, less where the check found excess
+  std::vector<LawCut> cuts;        ///< where a check found more between two nodes than at them
   std::vector<double> max_acceleration, max_jerk;  ///< a joint
   PathState begin, end;
   bool draft = false;  ///< of a path that is still being shaped: both end states are free, and jerk has its price told

@@ -100,7 +100,8 @@ bool moves_on(const LawProblem& p, std::size_t k, std::size_t j) noexcept {
 
 LawRows::LawRows(const LawProblem& p) {
   const std::size_t n = p.intervals();
-  all.reserve(n * ((p.joint_count + 2) / kLanes + 1 + p.joint_count));
+  all.reserve(n * ((p.joint_count + 2) / kLanes + 1 + p.joint_count) + p.cuts.size() * (p.joint_count + 1));
+  groups.reserve(n + p.cuts.size() + 1);
   groups.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
     groups[k].interval = k;

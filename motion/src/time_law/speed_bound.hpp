@@ -30,6 +30,9 @@ struct FeedRule {
 /// themselves.
 inline constexpr double kLawMargin = 0.9985;
 
+/// The speed that the joints' speeds alone allow at a point of the path, in mm/s.
+[[nodiscard]] double joint_speed_bound(const JointPoint& point, const std::vector<JointLimits>& joints) noexcept;
+
 /// The speed that the feed and the joints' speeds allow at a point of the path, in mm/s.
 [[nodiscard]] double speed_bound(const PathSegment& segment, const JointPoint& point,
                                  const std::vector<JointLimits>& joints, const FeedRule& feed) noexcept;

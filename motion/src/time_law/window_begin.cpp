@@ -9,8 +9,10 @@
 namespace rmac {
 namespace {
 
-/// A square of a speed that exceeds its bound by no more is not faster.
-constexpr double kAsFast = 1 + 1e-5;
+/// What exceeds the feed by no more is as fast as it: squares of speeds of a state, and of a law that passed its check.
+constexpr double kState = 1 + 1e-5, kLaw = 1.003;
+/// The margin that the law before left and a window may use most of near its begin.
+constexpr double kRelaxed = 0.9997 / kLawMargin;
 
 /// The square of the speed, and the acceleration, at the nodes of the problem's grid, up to rest.
 struct BrakingAtNodes {
@@ -44,27 +46,28 @@ BrakingAtNodes braking_from_begin(const LawProblem& problem, double part) {
   return braking;
 }
 
+/// Whether a square of a speed exceeds what the feed, not the joints, allows on an interval.
+bool over_feed(const LawProblem& problem, std::size_t k, double q, double part) {
+  return problem.speed_cap[k] < problem.fastest[k] && q > part * problem.speed_cap[k];
+}
+
 /// Whether a state that is not too fast yet becomes so whatever is done: braking that leaves half of the bounds to what
 /// else there is to do is too fast somewhere.
 bool overshoots(const LawProblem& problem) {
   const std::vector<double> q = braking_from_begin(problem, 0.5).q;
-  return !std::equal(q.begin(), q.end(), problem.speed_cap.begin(),
-                     [](double at, double cap) { return at <= kAsFast * cap; });
-}
-
-/// Lets the bounds of speed give way to the state at the begin, as far as gentle braking needs.
-void yield_to_begin(LawProblem& problem) {
-  const auto [q, a] = braking_from_begin(problem, 0.25);
   for (std::size_t k = 0; k < q.size(); ++k) {
-    double& cap = problem.speed_cap[k];
-    cap = std::max(cap, q[k] * 1.02 + 2 * std::max(a[k], 0.0) * problem.step(k));
+    if (over_feed(problem, k, q[k], kState)) return true;
   }
+  return false;
 }
 
 /// The square of the speed along a piece of law, and its slopes: q, q'/2 and q''/2.
 struct SquaredSpeed {
   double q = 0, a = 0, bend = 0;
+  /// The largest that it may be on an interval h long about the place.
+  [[nodiscard]] double most(double h) const { return q + h * std::abs(a) + h * h / 4 * std::abs(bend); }
 };
+using AlongIntervals = std::vector<std::optional<SquaredSpeed>>;
 
 /// At path length s; nothing behind the end of the piece.
 std::optional<SquaredSpeed> squared_speed(const LawPiece& piece, double s) {
@@ -85,9 +88,8 @@ std::optional<SquaredSpeed> squared_speed(const LawPiece& piece, double s) {
 }
 
 /// The law before along the middles of the problem's intervals, where it was in motion.
-std::vector<std::optional<SquaredSpeed>> along_intervals(const LawProblem& problem,
-                                                         const std::vector<LawPiece>& before) {
-  std::vector<std::optional<SquaredSpeed>> along(problem.intervals());
+AlongIntervals along_intervals(const LawProblem& problem, const std::vector<LawPiece>& before) {
+  AlongIntervals along(problem.intervals());
   std::size_t piece = 0;
   for (std::size_t k = 0; k < problem.intervals(); ++k) {
     const double middle = problem.nodes[k] + problem.step(k) / 2;
@@ -97,17 +99,35 @@ std::vector<std::optional<SquaredSpeed>> along_intervals(const LawProblem& probl
   return along;
 }
 
-/// Lets the next law start from the one before. Its state lies at the edge of what is viable, so the first stretch may
-/// use most of the margin that the law before left; and what that law had is the first guess (eq. 8). Where a feed
-/// gives way to that law (`yields`), it does so as far as the law went.
-void resume_from(LawProblem& problem, const std::vector<std::optional<SquaredSpeed>>& before, bool yields) {
-  constexpr double kRelaxed = 0.9997 / kLawMargin;
+/// Lets the feed give way as far as gentle braking needs, but no further than the law before went, nor than the joints.
+void yield_to_begin(LawProblem& problem, const AlongIntervals& before) {
+  const auto [q, a] = braking_from_begin(problem, 0.25);
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    const double h = problem.step(k), most = before[k] ? 1.0002 * before[k]->most(h) : problem.speed_cap[k];
+    const double needed = std::min({q[k] * 1.02 + 2 * std::max(a[k], 0.0) * h, most, problem.fastest[k]});
+    problem.speed_cap[k] = std::max(problem.speed_cap[k], needed);
+  }
+}
+
+/// Lets the feed give way where the law before, which was made for it, is faster.
+void yield_to_law(LawProblem& problem, const AlongIntervals& before) {
+  for (std::size_t k = 0; k < problem.intervals(); ++k) {
+    if (!before[k] || !over_feed(problem, k, before[k]->q, kState)) continue;
+    const double most = std::min(1.0002 * before[k]->most(problem.step(k)), problem.fastest[k]);
+    problem.speed_cap[k] = std::max(problem.speed_cap[k], most);
+  }
+}
+
+/// The first guess is what the law before had (eq. 8). Its state lies at the edge of what is viable, so the first
+/// stretch may use most of the margin that it left.
+void resume_from(LawProblem& problem, const AlongIntervals& before) {
   constexpr double kEasing = 0.1;  ///< of the window
   const double span = problem.nodes.back() - problem.nodes.front();
   problem.travelled_before.assign(problem.intervals() + 2, 0.0);
   for (std::size_t k = 0; k < problem.intervals(); ++k) {
     if (problem.nodes[k] - problem.nodes.front() < 0.25 * span) {
       for (auto* bound : {&problem.tightening, &problem.rise, &problem.fall}) (*bound)[k] *= kRelaxed;
+      if (problem.speed_cap[k] >= problem.fastest[k]) problem.speed_cap[k] = problem.fastest[k] * kRelaxed * kRelaxed;
     }
     if (!before[k]) continue;
     const SquaredSpeed& at = *before[k];
@@ -116,8 +136,6 @@ void resume_from(LawProblem& problem, const std::vector<std::optional<SquaredSpe
     const double into = std::min((middle - problem.nodes.front()) / (kEasing * span), 1.0);
     const double part = 1 - 0.005 * into * into * (3 - 2 * into);
     problem.travelled_before[k + 1] = std::max(0.0, part * (at.q - h * h / 4 * at.bend));
-    const double most = at.q + h * std::abs(at.a) + h * h / 4 * std::abs(at.bend);
-    if (yields) problem.speed_cap[k] = std::max(problem.speed_cap[k], 1.01 * most);
   }
 }
 
@@ -129,20 +147,23 @@ std::vector<double> nodes_kept(const std::vector<LawPiece>& before, double s_beg
   std::vector<double> kept;
   for (const LawPiece& piece : before) {
     if (piece.start.s > s_begin + kKeptPart * (s_end - s_begin)) break;
-    if (piece.start.s > s_begin && piece.at(piece.duration).s - piece.start.s > kFinest * step)
+    // Nor is the first one to be next to nothing.
+    if (piece.start.s > s_begin + kFinest * step && piece.at(piece.duration).s - piece.start.s > kFinest * step)
       kept.push_back(piece.start.s);
   }
   return kept;
 }
 
 bool go_on_from(LawProblem& problem, const Window& window) {
-  const auto before = along_intervals(problem, *window.before);
-  const bool too_fast = problem.begin.v * problem.begin.v > kAsFast * problem.speed_cap[0];
-  const bool was_faster = !std::equal(before.begin(), before.end(), problem.speed_cap.begin(),
-                                      [](const auto& at, double cap) { return !at || at->q <= kAsFast * cap; });
+  const AlongIntervals before = along_intervals(problem, *window.before);
+  bool was_faster = false;
+  for (std::size_t k = 0; k < before.size() && !was_faster; ++k)
+    was_faster = before[k] && over_feed(problem, k, before[k]->q, kLaw);
+  const bool too_fast = over_feed(problem, 0, problem.begin.v * problem.begin.v, kState);
   const bool yields = too_fast || (was_faster && (window.same_feed || overshoots(problem)));
-  if (yields) yield_to_begin(problem);
-  resume_from(problem, before, yields && window.same_feed);
+  if (yields) yield_to_begin(problem, before);
+  if (yields && window.same_feed) yield_to_law(problem, before);
+  resume_from(problem, before);
   return yields;
 }
 

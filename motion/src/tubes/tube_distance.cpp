@@ -99,7 +99,8 @@ class TubeCheck {
       take(polyline_.vertices[k], polyline_.vertices[k + 1]);
     const double length = b.at - a.at, bound = chord + length * length / 8 * stretch.bend;
     stretch.seen = std::max({stretch.seen, nearest_a, nearest_b});
-    if (halvings == 0 || bound <= std::max(stretch.most, kHardly * stretch.seen)) {
+    const bool outside = stretch.seen > stretch.most;
+    if (halvings == 0 || bound <= (outside ? kHardly * stretch.seen : stretch.most)) {
       stretch.bound = std::max(stretch.bound, bound);
       return;
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "time_law/law_problem.hpp"
+#include "unit/motion/planner/planner_bench.hpp"
 
 namespace rmac {
 namespace {
@@ -65,6 +66,37 @@ TEST(LawMend, KeepsTheBoundsAtACutAsAtANode) {
   EXPECT_LE(jerk_at(cut, here, with.coefficients), 1 + 1e-6);
   EXPECT_GT(jerk_at(cut, here, with.coefficients), 0.95) << "and no slower than that asks for";
   EXPECT_GT(spline_start(cut, with.coefficients, 10).q, 0.99 * spline_start(free, without.coefficients, 10).q);
+}
+
+TEST(LawMend, CutsWithinAnIntervalAndNotTwiceAtAPlace) {
+  test::PlannerBench bench(test::mill());
+  bench.builder.restart(std::vector<double>{20, 0, 0}, {});
+  Move move;
+  move.feed_mm_s = 30;
+  ArcGeometry arc;
+  arc.start = {{20, 0, 0}, {0, 0, 1}};
+  arc.end = {{-20, 0, 0}, {0, 0, 1}};
+  move.geometry = arc;
+  const auto built = bench.builder.build(move);
+  ASSERT_TRUE(built);
+  const std::vector<double> starts{0};
+  const PathView path(*built, starts);
+  LawProblem problem = cruise();
+  problem.joint_count = 3;
+  EXPECT_FALSE(cut_at(problem, path, 60, 30)) << "a node";
+  EXPECT_FALSE(cut_at(problem, path, 60, 30.5)) << "the next";
+  EXPECT_FALSE(cut_at(problem, path, 60, 31)) << "another interval's";
+  ASSERT_TRUE(cut_at(problem, path, 60, 30.1));
+  EXPECT_FALSE(cut_at(problem, path, 60, 30.11)) << "says the same";
+  ASSERT_TRUE(cut_at(problem, path, 60, 30.2));
+  ASSERT_EQ(problem.cuts.size(), 2U);
+  EXPECT_NEAR(problem.cuts[0].part, 0.2, 1e-12);
+  ASSERT_EQ(problem.cuts[0].derivatives.size(), 9U);
+  const double turn = 30.1 / 20;
+  EXPECT_NEAR(problem.cuts[0].derivatives[0], -std::sin(turn), 1e-9) << "of X, the first";
+  EXPECT_NEAR(problem.cuts[0].derivatives[1], std::cos(turn), 1e-9) << "of Y";
+  EXPECT_NEAR(problem.cuts[0].derivatives[3], -std::cos(turn) / 20, 1e-9) << "the second";
+  EXPECT_NEAR(problem.cuts[0].derivatives[7], -std::cos(turn) / 400, 1e-9) << "the third of Y";
 }
 
 TEST(LawMend, TakesACutAlongWhereAPartIsSolvedAgain) {

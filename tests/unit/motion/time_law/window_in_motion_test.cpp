@@ -60,7 +60,8 @@ void goes_on_from_everywhere(const JoinedLines& lines, const std::vector<JointLi
     const double to = std::max(first, std::min(from.s + ahead, lines.end));
     const auto next = plan_window(lines.path(), joints, {from, to, {}, &*law, true, true});
     ASSERT_TRUE(next) << "at " << from.s << " mm, " << from.v << " mm/s, " << from.a << " mm/s²";
-    EXPECT_LE(check_law(lines.path(), joints, *next, nullptr).worst, 1);
+    const FeedRule programmed;
+    EXPECT_LE(check_law(lines.path(), joints, *next, &programmed).worst, 1);
   }
 }
 
@@ -88,7 +89,7 @@ TEST_P(WindowInMotion, GoesOnWhileItBrakesAsHardAsItsPathMay) {
   goes_on_from_everywhere({joints, {{0, 0, 0}, corner, end}, move}, joints, 15, 20);
 }
 
-// In each corner one joint's jerk peaks between two nodes of the law's grid, while another's is at its bound there.
+// In corners one joint's jerk may peak between two nodes of the law's grid, while another's is at its bound there.
 TEST_P(WindowInMotion, GoesOnAlongAZigzag) {
   auto joints = test::mill(logarithmic(10'000, 90'000)).joints;
   for (JointLimits& joint : joints) joint.max_acceleration = uniform(1000, 5000);
@@ -106,7 +107,52 @@ TEST_P(WindowInMotion, GoesOnAlongAZigzag) {
   goes_on_from_everywhere(lines, joints, 0.15 * lines.end, 0.15 * lines.end);
 }
 
+/// A law of a zigzag, checked against limits that are a little lower than those that it was made for.
+TEST_P(WindowInMotion, IsToldWhereItIsMostOverBetweenItsNodes) {
+  auto joints = test::mill(logarithmic(10'000, 90'000)).joints;
+  Move move;
+  move.feed_mm_s = uniform(20, 60);
+  move.tolerance_mm = 0.03;
+  std::vector<Vector> places;
+  for (int i = 0; i <= 40; ++i) places.push_back({0.3 * i, i % 2 == 0 ? -0.1 : 0.1, 0});
+  const JoinedLines lines(joints, places, move);
+  const auto law = plan_window(lines.path(), joints, {{0, 0, 0}, lines.end, {}, nullptr, false, true});
+  ASSERT_TRUE(law);
+  for (JointLimits& joint : joints) joint.max_acceleration /= 1.05, joint.max_jerk /= 1.05;
+  const LawExcess excess = check_law(lines.path(), joints, *law, nullptr);
+  ASSERT_EQ(excess.peaks.size(), law->size());
+  int peaks = 0;
+  for (std::size_t i = 0; i < law->size(); ++i) {
+    if (excess.by_piece[i] <= 1) {
+      EXPECT_FALSE(excess.peaks[i]) << i;
+    }
+    if (!excess.peaks[i]) continue;
+    ++peaks;
+    const LawPiece& piece = (*law)[i];
+    const double s = *excess.peaks[i];
+    ASSERT_GT(s, piece.start.s);
+    ASSERT_LT(s, piece.at(piece.duration).s);
+    double low = 0, high = piece.duration;
+    for (int n = 0; n < 60; ++n) (piece.at(0.5 * (low + high)).s < s ? low : high) = 0.5 * (low + high);
+    const PathState at = piece.at(high);
+    JointPoint point;
+    ASSERT_EQ(lines.path().derivatives(s, 1, point), KinematicsStatus::Ok);
+    const double path_jerk = piece.kind == LawPiece::Kind::Jerk ? piece.slope : piece.slope * at.v;
+    double most = 0;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      const double acceleration = point.d[2][j] * at.v * at.v + point.d[1][j] * at.a;
+      const double jerk =
+          point.d[3][j] * std::pow(at.v, 3) + 3 * point.d[2][j] * at.v * at.a + point.d[1][j] * path_jerk;
+      most = std::max({most, std::abs(acceleration) / joints[j].max_acceleration, std::abs(jerk) / joints[j].max_jerk});
+    }
+    EXPECT_NEAR(most, excess.by_piece[i], 0.01) << "piece " << i;
+  }
+  EXPECT_GT(peaks, 5);
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, WindowInMotion, test::seeds(24));
+/// Zigzags on which states have no law behind them where bounds are kept at nodes alone.
+INSTANTIATE_TEST_SUITE_P(PeaksBetweenNodes, WindowInMotion, testing::Values(119U, 131U, 155U));
 
 }  // namespace
 }  // namespace rmac
