@@ -35,7 +35,8 @@ struct LawProblem {
   std::vector<double> nodes;        ///< N + 1 ascending path lengths
   std::vector<double> derivatives;  ///< an interval: left d1 d2 d3, right d1 d2 d3, each joint_count values
   std::vector<double> speed_cap;    ///< an interval: bound of q, mm²/s²
-  std::vector<double> fastest;      ///< an interval: bound of q by the joints' speeds alone; empty in a draft
+  /// Of a window, an interval: what bounds q by the feed alone, and by the joints' speeds alone.
+  std::vector<double> feed_cap, fastest;
   std::vector<double> rise,
       fall;  ///< an interval: bounds of path acceleration, mm/s²; infinity where the joints alone bound it
   std::vector<double> tightening;  ///< an interval: bounds of joints' acceleration and jerk are multiplied by it; about

@@ -13,12 +13,16 @@ double joint_speed_bound(const JointPoint& point, const std::vector<JointLimits>
   return v;
 }
 
+double feed_bound(const PathSegment& segment, const JointPoint& point, const std::vector<JointLimits>& joints,
+                  const FeedRule& feed) noexcept {
+  if (!segment.curve().in_joint_space()) return feed.bound(segment);
+  const double part = segment.demand().joint_speed_fraction * feed.override_factor;
+  return std::min(feed.bound(segment), joint_speed_bound(point, joints) * part);
+}
+
 double speed_bound(const PathSegment& segment, const JointPoint& point, const std::vector<JointLimits>& joints,
                    const FeedRule& feed) noexcept {
-  const double fastest = joint_speed_bound(point, joints);
-  const double v = std::min(feed.bound(segment), fastest);
-  if (!segment.curve().in_joint_space()) return v;
-  return std::min(v, fastest * segment.demand().joint_speed_fraction * feed.override_factor);
+  return std::min(feed_bound(segment, point, joints, feed), joint_speed_bound(point, joints));
 }
 
 }  // namespace rmac

@@ -33,7 +33,11 @@ inline constexpr double kLawMargin = 0.9985;
 /// The speed that the joints' speeds alone allow at a point of the path, in mm/s.
 [[nodiscard]] double joint_speed_bound(const JointPoint& point, const std::vector<JointLimits>& joints) noexcept;
 
-/// The speed that the feed and the joints' speeds allow at a point of the path, in mm/s.
+/// The speed that the feed alone allows at a point of the path, in mm/s.
+[[nodiscard]] double feed_bound(const PathSegment& segment, const JointPoint& point,
+                                const std::vector<JointLimits>& joints, const FeedRule& feed) noexcept;
+
+/// Both, in mm/s.
 [[nodiscard]] double speed_bound(const PathSegment& segment, const JointPoint& point,
                                  const std::vector<JointLimits>& joints, const FeedRule& feed) noexcept;
 

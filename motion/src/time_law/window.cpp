@@ -33,6 +33,7 @@ bool fill(LawProblem& problem, const PathView& path, const std::vector<JointLimi
   problem.joint_count = n;
   problem.derivatives.resize(intervals * 6 * n);
   problem.speed_cap.resize(intervals);
+  problem.feed_cap.resize(intervals);
   problem.fastest.resize(intervals);
   problem.rise.resize(intervals);
   problem.fall.resize(intervals);
@@ -45,17 +46,18 @@ bool fill(LawProblem& problem, const PathView& path, const std::vector<JointLimi
   for (std::size_t k = 0; k < intervals; ++k) {
     double* out = problem.derivatives.data() + k * 6 * n;
     const PathSegment& segment = path.segment(path.find(0.5 * (problem.nodes[k] + problem.nodes[k + 1]), 1));
-    double v = kInfinity, joints_v = kInfinity;
+    double feed_v = kInfinity, joints_v = kInfinity;
     const double left_s = problem.nodes[k], right_s = problem.nodes[k + 1];
     for (int right = 0; right < 2; ++right) {
       const double s = right != 0 ? just_inside(right_s, left_s) : just_inside(left_s, right_s);
       if (path.derivatives(s, right != 0 ? -1 : 1, point) != KinematicsStatus::Ok) return false;
       for (std::size_t d = 1; d <= 3; ++d) out = std::copy_n(point.d[d].begin(), n, out);
-      v = std::min(v, speed_bound(segment, point, joints, feed));
+      feed_v = std::min(feed_v, feed_bound(segment, point, joints, feed));
       joints_v = std::min(joints_v, joint_speed_bound(point, joints));
     }
-    problem.speed_cap[k] = v * v;
+    problem.feed_cap[k] = feed_v * feed_v;
     problem.fastest[k] = joints_v * joints_v;
+    problem.speed_cap[k] = std::min(problem.feed_cap[k], problem.fastest[k]);
     problem.rise[k] = or_unbounded(segment.demand().accel_rise_mm_s2) * kLawMargin;
     problem.fall[k] = or_unbounded(segment.demand().accel_fall_mm_s2) * kLawMargin;
   }

@@ -11,7 +11,8 @@ namespace {
 
 /// What exceeds the feed by no more is as fast as it: squares of speeds of a state, and of a law that passed its check.
 constexpr double kState = 1 + 1e-5, kLaw = 1.003;
-/// The margin that the law before left and a window may use most of near its begin.
+/// The margin that the law before left to the joints' bounds, speeds among them, and a window may use most of near its
+/// begin.
 constexpr double kRelaxed = 0.9997 / kLawMargin;
 
 /// The square of the speed, and the acceleration, at the nodes of the problem's grid, up to rest.
@@ -48,7 +49,7 @@ BrakingAtNodes braking_from_begin(const LawProblem& problem, double part) {
 
 /// Whether a square of a speed exceeds what the feed, not the joints, allows on an interval.
 bool over_feed(const LawProblem& problem, std::size_t k, double q, double part) {
-  return problem.speed_cap[k] < problem.fastest[k] && q > part * problem.speed_cap[k];
+  return problem.feed_cap[k] < problem.fastest[k] && q > part * problem.feed_cap[k];
 }
 
 /// Whether a state that is not too fast yet becomes so whatever is done: braking that leaves half of the bounds to what
@@ -127,7 +128,8 @@ void resume_from(LawProblem& problem, const AlongIntervals& before) {
   for (std::size_t k = 0; k < problem.intervals(); ++k) {
     if (problem.nodes[k] - problem.nodes.front() < 0.25 * span) {
       for (auto* bound : {&problem.tightening, &problem.rise, &problem.fall}) (*bound)[k] *= kRelaxed;
-      if (problem.speed_cap[k] >= problem.fastest[k]) problem.speed_cap[k] = problem.fastest[k] * kRelaxed * kRelaxed;
+      const double relaxed = std::min(problem.feed_cap[k], problem.fastest[k] * kRelaxed * kRelaxed);
+      problem.speed_cap[k] = std::max(problem.speed_cap[k], relaxed);
     }
     if (!before[k]) continue;
     const SquaredSpeed& at = *before[k];
