@@ -11,6 +11,8 @@ namespace {
 
 /// What exceeds the feed by no more is as fast as it: squares of speeds of a state, and of a law that passed its check.
 constexpr double kState = 1 + 1e-5, kLaw = 1.003;
+/// Room that a bound leaves to what it gives way to.
+constexpr double kGivesWay = 1.0002;
 /// The margin that the law before left to the joints' bounds, speeds among them, and a window may use most of near its
 /// begin.
 constexpr double kRelaxed = 0.9997 / kLawMargin;
@@ -100,11 +102,18 @@ AlongIntervals along_intervals(const LawProblem& problem, const std::vector<LawP
   return along;
 }
 
-/// Lets the feed give way as far as gentle braking needs, but no further than the law before went, nor than the joints.
-void yield_to_begin(LawProblem& problem, const AlongIntervals& before) {
+/// Lets the feed give way as far as gentle braking needs, but no further than the joints' speeds, nor than the law
+/// before went; where that brakes already, for the same feed, than it had come until there, and than the feed that was
+/// programmed.
+void yield_to_begin(LawProblem& problem, const AlongIntervals& before, const Window& window) {
   const auto [q, a] = braking_from_begin(problem, 0.25);
+  const double lowered = std::min(window.feed.override_factor, 1.0);
+  double came_to = problem.begin.v * problem.begin.v;
   for (std::size_t k = 0; k < q.size(); ++k) {
-    const double h = problem.step(k), most = before[k] ? 1.0002 * before[k]->most(h) : problem.speed_cap[k];
+    const double h = problem.step(k);
+    double most = before[k] ? kGivesWay * before[k]->most(h) : problem.speed_cap[k];
+    if (before[k]) came_to = std::max(came_to, before[k]->q);
+    if (window.same_feed) most = std::max(most, std::min(came_to, problem.feed_cap[k] / (lowered * lowered)));
     const double needed = std::min({q[k] * 1.02 + 2 * std::max(a[k], 0.0) * h, most, problem.fastest[k]});
     problem.speed_cap[k] = std::max(problem.speed_cap[k], needed);
   }
@@ -114,7 +123,7 @@ void yield_to_begin(LawProblem& problem, const AlongIntervals& before) {
 void yield_to_law(LawProblem& problem, const AlongIntervals& before) {
   for (std::size_t k = 0; k < problem.intervals(); ++k) {
     if (!before[k] || !over_feed(problem, k, before[k]->q, kState)) continue;
-    const double most = std::min(1.0002 * before[k]->most(problem.step(k)), problem.fastest[k]);
+    const double most = std::min(kGivesWay * before[k]->most(problem.step(k)), problem.fastest[k]);
     problem.speed_cap[k] = std::max(problem.speed_cap[k], most);
   }
 }
@@ -163,7 +172,7 @@ bool go_on_from(LawProblem& problem, const Window& window) {
     was_faster = before[k] && over_feed(problem, k, before[k]->q, kLaw);
   const bool too_fast = over_feed(problem, 0, problem.begin.v * problem.begin.v, kState);
   const bool yields = too_fast || (was_faster && (window.same_feed || overshoots(problem)));
-  if (yields) yield_to_begin(problem, before);
+  if (yields) yield_to_begin(problem, before, window);
   if (yields && window.same_feed) yield_to_law(problem, before);
   resume_from(problem, before);
   return yields;
