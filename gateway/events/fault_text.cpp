@@ -177,9 +177,8 @@ std::string joint_cause(const ServoFault& fault, const std::string& at) {
     case ServoFault::Kind::Oscillation:
       return fmt::format(
           "{}: its servo loop swings at about {:.3g} Hz, its effort by {:.3g} either way; look for loose mechanics, "
-          "load it with softer loops (`rmac load --soften 8`, or by more where it swings then, too), and have `rmac "
-          "tune` "
-          "find gains and filters for it",
+          "load it with softer loops (`rmac load --soften 8`, or by more where it swings then, too), and have "
+          "`rmac tune` find gains and filters for it",
           at, fault.value, fault.bound);
     case ServoFault::Kind::WrongDirection:
       return fmt::format(

@@ -103,17 +103,22 @@ AlongIntervals along_intervals(const LawProblem& problem, const std::vector<LawP
 }
 
 /// Lets the feed give way as far as gentle braking needs, but no further than the joints' speeds, nor than the law
-/// before went; where that brakes already, for the same feed, than it had come until there, and than the feed that was
-/// programmed.
+/// before went; where that brakes already, for the same feed, than it had come until there and than the feed that was
+/// programmed, up to a move that is slower.
 void yield_to_begin(LawProblem& problem, const AlongIntervals& before, const Window& window) {
   const auto [q, a] = braking_from_begin(problem, 0.25);
   const double lowered = std::min(window.feed.override_factor, 1.0);
   double came_to = problem.begin.v * problem.begin.v;
+  bool slower = false;
   for (std::size_t k = 0; k < q.size(); ++k) {
     const double h = problem.step(k);
+    const double programmed = problem.feed_cap[k] / (lowered * lowered);
     double most = before[k] ? kGivesWay * before[k]->most(h) : problem.speed_cap[k];
+    // Room upon room, window after window, would become much.
+    if (before[k] && before[k]->q <= kLaw * programmed) most = std::min(most, programmed);
     if (before[k]) came_to = std::max(came_to, before[k]->q);
-    if (window.same_feed) most = std::max(most, std::min(came_to, problem.feed_cap[k] / (lowered * lowered)));
+    slower = slower || problem.feed_cap[k] < (1 - 1e-9) * problem.feed_cap[0];
+    if (window.same_feed && !slower) most = std::max(most, std::min(came_to, programmed));
     const double needed = std::min({q[k] * 1.02 + 2 * std::max(a[k], 0.0) * h, most, problem.fastest[k]});
     problem.speed_cap[k] = std::max(problem.speed_cap[k], needed);
   }
@@ -123,7 +128,7 @@ void yield_to_begin(LawProblem& problem, const AlongIntervals& before, const Win
 void yield_to_law(LawProblem& problem, const AlongIntervals& before) {
   for (std::size_t k = 0; k < problem.intervals(); ++k) {
     if (!before[k] || !over_feed(problem, k, before[k]->q, kState)) continue;
-    const double most = std::min(kGivesWay * before[k]->most(problem.step(k)), problem.fastest[k]);
+    const double most = std::min(before[k]->most(problem.step(k)), problem.fastest[k]);
     problem.speed_cap[k] = std::max(problem.speed_cap[k], most);
   }
 }

@@ -12,6 +12,7 @@ namespace {
 constexpr double kSpansALine = 3;
 /// Where a spline leaves the tolerance between its samples, the tube is made narrower.
 constexpr int kTubeTrials = 3;
+/// In tolerances: what is further out no narrower tube brings back.
 constexpr double kFarOut = 2;
 
 }  // namespace
