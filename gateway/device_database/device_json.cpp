@@ -60,11 +60,16 @@ void add_force(Json& object, const sdk::Joint& joint) {
   if (const auto& force = joint.force) {
     object["ForceControl"] = {{"ApproachSpeed", force->approach_speed},
                               {"ContactForce", force->contact_force},
-                              {"Gain", force->gain},
-                              {"ResetTime", force->reset_time_s},
                               {"MaxSpeed", force->max_speed},
                               {"MaxForce", force->max_force},
                               {"MaxSearch", force->max_search}};
+    Json& object_of_force = object["ForceControl"];
+    for (const auto& [key, value] : {std::pair{"Gain", force->gain},
+                                     {"ResetTime", force->reset_time_s},
+                                     {"Mass", force->mass},
+                                     {"Stiffness", force->stiffness}}) {
+      if (value > 0) object_of_force[key] = value;
+    }
   }
 }
 

@@ -95,11 +95,13 @@ std::optional<ForceControl> force_control(const Json& joint) {
   ForceControl result;
   result.approach_speed = number(*force, "ApproachSpeed");
   result.contact_force = number(*force, "ContactForce");
-  result.gain = number(*force, "Gain");
-  result.reset_time_s = number(*force, "ResetTime");
+  result.gain = force->value("Gain", 0.0);
+  result.reset_time_s = force->value("ResetTime", 0.0);
   result.max_speed = number(*force, "MaxSpeed");
   result.max_force = number(*force, "MaxForce");
   result.max_search = number(*force, "MaxSearch");
+  result.mass = force->value("Mass", 0.0);
+  result.stiffness = force->value("Stiffness", 0.0);
   return result;
 }
 

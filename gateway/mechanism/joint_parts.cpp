@@ -29,6 +29,10 @@ JointBounds bounds(const sdk::Joint& joint, double period_s) {
 ForceControl force(const sdk::Joint& joint) {
   ForceControl result = joint.force.value_or(ForceControl{});
   result.max_acceleration = joint.limits.max_acceleration;
+  // A law with a model of the joint knows what it weighs.
+  const auto known = joint.servo_law.numbers.find("mass");
+  if (result.mass == 0 && known != joint.servo_law.numbers.end() && known->second.size() == 1)
+    result.mass = known->second.front();
   return result;
 }
 

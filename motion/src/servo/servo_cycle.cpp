@@ -17,7 +17,7 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
       transmission(*parts.actuator_map, parts.joints),
       joints(parts, wiring, transmission),
       homing(parts.actuators, parts.homing_timeout_s, parts.period_s),
-      setpoints(parts, wiring.joint_delays()),
+      setpoints(parts, wiring.joint_delays(), wiring.follow_themselves()),
       motion_watch(parts),
       deadlines(parts.max_cycles_lost, parts.period_s),
       laws(parts.joints, parts.period_s),
@@ -206,17 +206,19 @@ void ServoLoop::Impl::go_live() noexcept {
 void ServoLoop::Impl::choose_setpoints(const ServoCommand& command) noexcept {
   const bool program = command.program && state.follows() && !state.braking();
   setpoints.learned().step(command.setpoint, program, live.all() & ~wiring.follow_themselves());
+  const Setpoints::Seen now{.plan = command.setpoint,
+                            .wanted_force = command.force,
+                            .position = joints.position(),
+                            .velocity = joints.velocity(),
+                            .force = joints.force(),
+                            .effort = laws.effort(),
+                            .live = live.all(),
+                            .follows = state.follows() && !state.braking()};
   if (state.braking()) {
-    setpoints.brake();
-    return;
+    setpoints.brake(now);
+  } else {
+    setpoints.step(now, state);
   }
-  setpoints.step({.plan = command.setpoint,
-                  .wanted_force = command.force,
-                  .position = joints.position(),
-                  .force = joints.force(),
-                  .live = live.all(),
-                  .follows = state.follows()},
-                 state);
 }
 
 JointSeen ServoLoop::Impl::seen(std::size_t joint) const noexcept {
@@ -230,6 +232,7 @@ JointSeen ServoLoop::Impl::seen(std::size_t joint) const noexcept {
           .force = joints.force()[joint],
           .contact = force_loop.state(),
           .searched = force_loop.searched(),
+          .bounces = force_loop.bounces(),
           .loop = {.effort = measured.value_or(laws.effort()[joint]),
                    .effort_measured = measured.has_value(),
                    .answer_delay = wiring.joint_delays()[joint],
@@ -272,6 +275,11 @@ ServoInput ServoLoop::Impl::input(std::size_t joint) const noexcept {
   if (wiring.follows_itself(joint)) {
     seen.position = seen.position_setpoint;
     seen.velocity = seen.velocity_setpoint;
+  } else if (setpoints.pushes(joint)) {
+    // It is where its force wants it: the law damps it.
+    seen.position = seen.position_setpoint;
+    seen.velocity_setpoint = seen.acceleration_setpoint = 0;
+    seen.velocity = setpoints.force_loop(joint).damped(joints.velocity()[joint]);
   }
   return seen;
 }
@@ -281,7 +289,9 @@ void ServoLoop::Impl::run_laws() noexcept {
     if (!state.powered() || !laws.has_law(j)) {
       laws.let_go(j);
     } else if (live[j]) {
-      if (!laws.run(j, input(j), state)) return;
+      const std::optional<double> beside =
+          setpoints.pushes(j) ? std::optional(setpoints.force_loop(j).effort()) : std::nullopt;
+      if (!laws.run(j, input(j), beside, state)) return;
     } else if (state.braking()) {
       laws.let_go(j);
     } else {

@@ -60,6 +60,29 @@ class RestToRest {
   double jerk_time_, accel_time_, cruise_time_;
 };
 
+/// device.json of a machine, numbers of its laws as lists of them.
+inline nlohmann::json declared(const std::string& folder) {
+  nlohmann::json device = nlohmann::json::parse(std::ifstream(RMAC_SOURCE_DIR "/drivers/" + folder + "/device.json"));
+  for (nlohmann::json& joint : device["Joints"]) {
+    for (auto& [key, value] : joint["ServoControlLaw"]["Parameters"].items()) value = {value.get<double>()};
+  }
+  return device;
+}
+
+/// What device.json knows of the mechanics of its joints and of the cogging of its motors.
+inline void make_good(const nlohmann::json& device, ServoLoopParts& parts) {
+  for (std::size_t j = 0; j < device["Joints"].size(); ++j) {
+    const nlohmann::json& joint = device["Joints"][j];
+    parts.joints[j].mechanics.low_pass_hz = joint["LowPass"];
+    for (const nlohmann::json& one : joint["Resonances"])
+      parts.joints[j].mechanics.resonances.push_back({one["Frequency"], one["Damping"], one["Width"]});
+    const nlohmann::json& cogging = device["Actuators"][j]["Cogging"];
+    parts.actuators[j].cogging.lead_s = cogging["Lead"];
+    for (const nlohmann::json& one : cogging["Harmonics"])
+      parts.actuators[j].cogging.harmonics.push_back({one["Order"], one["Cosine"], one["Sine"]});
+  }
+}
+
 /// A mill with the modules and scales of its own device.json on rigid simulated axes, with loops for such, unless
 /// `edit` changes them.
 class Mill {

@@ -23,14 +23,20 @@ void JointLaws::engage(std::size_t joint, const ServoInput& input, double from_e
   if (!has_law(joint)) return;
   joints_[joint].law->engage(input, from_effort);
   filters_[joint].engage(from_effort);
+  pushed_ &= ~only(joint);
 }
 
 void JointLaws::engage_beside(std::size_t joint, double from_effort) noexcept {
   if (has_law(joint)) filters_[joint].engage(from_effort);
 }
 
-bool JointLaws::run(std::size_t joint, const ServoInput& input, FaultSink& faults) noexcept {
-  const double wanted = joints_[joint].law->update(input);
+bool JointLaws::run(std::size_t joint, const ServoInput& input, std::optional<double> beside,
+                    FaultSink& faults) noexcept {
+  if (beside.has_value() != has(pushed_, joint)) {
+    engage(joint, input, effort_[joint]);
+    pushed_ |= beside ? only(joint) : 0;
+  }
+  const double wanted = joints_[joint].law->update(input) + beside.value_or(0);
   if (!std::isfinite(wanted)) {
     let_go();
     faults.raise({ServoFault::Kind::NotANumber, ServoFault::Part::Joint, static_cast<std::uint32_t>(joint), wanted, 0});

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "rmac/motion/machine_size.hpp"
 #include "rmac/motion/servo/servo_loop_parts.hpp"
 #include "servo/faults/fault_sink.hpp"
+#include "servo/joints/index_set.hpp"
 #include "servo/laws/effort_filter.hpp"
 
 namespace rmac {
@@ -27,8 +29,10 @@ class JointLaws {
   void engage_beside(std::size_t joint, double from_effort) noexcept;
 
   /// One cycle of a joint under control. False when its law gives no number, which is a fault: then no joint has an
-  /// effort.
-  [[nodiscard]] bool run(std::size_t joint, const ServoInput& input, FaultSink& faults) noexcept;
+  /// effort. `beside`: what is added to the law's, where that is not all; where that begins or ends, the law goes on
+  /// from the effort there is.
+  [[nodiscard]] bool run(std::size_t joint, const ServoInput& input, std::optional<double> beside,
+                         FaultSink& faults) noexcept;
   /// A joint whose drive is about to be enabled: it acts on the torque beside the word that enables it, before any
   /// position of it could be controlled.
   void rest(std::size_t joint) noexcept { effort_[joint] = resting_effort(joint); }
@@ -43,6 +47,7 @@ class JointLaws {
  private:
   std::span<const ServoJoint> joints_;
   std::vector<EffortFilter> filters_;
+  IndexSet pushed_ = 0;  ///< joints whose law was not all in the cycle before
   std::array<double, kMaxJoints> effort_{};
 };
 

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace rmac {
 namespace {
+
+constexpr double kSoft = 0.25;
+constexpr double kAnything = std::numeric_limits<double>::infinity();
 
 std::vector<MotionBounds> stop_bounds(std::span<const ServoJoint> joints) {
   constexpr double kAnySpeed = 1e9;  // it falls only
@@ -19,7 +23,7 @@ std::vector<MotionBounds> stop_bounds(std::span<const ServoJoint> joints) {
 
 }  // namespace
 
-Setpoints::Setpoints(const ServoLoopParts& parts, const Wiring::Delays& delays)
+Setpoints::Setpoints(const ServoLoopParts& parts, const Wiring::Delays& delays, IndexSet follow_themselves)
     : joints_(parts.joints),
       kinematic_joints_(parts.kinematics->joint_count()),
       period_s_(parts.period_s),
@@ -28,7 +32,11 @@ Setpoints::Setpoints(const ServoLoopParts& parts, const Wiring::Delays& delays)
       brake_(stop_bounds(parts.joints)) {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     followers_.emplace_back(joints_[j], period_s_);
-    force_loops_.emplace_back(joints_[j].force, period_s_);
+    // What the joint's bounds say of its own loop: it is as stiff as one that is pushed with all it has at its largest
+    // error. A part is soft that is much softer.
+    const double own =
+        has(follow_themselves, j) ? kAnything : kSoft * joints_[j].max_effort / joints_[j].max_following_error;
+    force_loops_.emplace_back(joints_[j].force, period_s_, own);
     ways_.push_back({RecentWay(delays[j]), RecentWay(delays[j])});
   }
   if (virtual_mode_) hold_at(parts.virtual_start);
@@ -49,8 +57,8 @@ void Setpoints::note_way(std::size_t joint, double position_before, double veloc
 void Setpoints::choose(const Seen& seen, FaultSink& faults) noexcept {
   const IndexSet followed_before = std::exchange(on_the_way_, 0);
   for (std::size_t j = 0; j < joints_.size(); ++j) {
-    if (joints_[j].method == ControlMethod::Force && has(seen.live, j)) {
-      follow_force(j, seen.follows ? seen.wanted_force[j] : 0, seen.force[j]);
+    if (by_force(j, seen.live)) {
+      follow_force(j, seen);
     } else if (seen.follows && j < kinematic_joints_) {
       if (!follow(j, seen, has(followed_before, j), faults)) return;
     } else {
@@ -80,18 +88,31 @@ bool Setpoints::follow(std::size_t joint, const Seen& seen, bool followed_before
 }
 
 // A joint under force control is out of the plan: its setpoint goes where its force sends it.
-void Setpoints::follow_force(std::size_t joint, double wanted, double measured) noexcept {
-  const double velocity = force_loops_[joint].step(std::isfinite(wanted) ? wanted : 0, measured);
-  set(joint, {position_[joint] + velocity * period_s_, velocity, 0});
+void Setpoints::follow_force(std::size_t joint, const Seen& seen) noexcept {
+  ForceLoop& loop = force_loops_[joint];
+  const double wanted = seen.follows && std::isfinite(seen.wanted_force[joint]) ? seen.wanted_force[joint] : 0;
+  const double effort = seen.effort[joint];
+  const bool bounded = std::abs(effort) >= joints_[joint].max_effort;
+  loop.step({.wanted = wanted,
+             .measured = seen.force[joint],
+             .position = seen.position[joint],
+             .velocity = seen.velocity[joint],
+             .bounded = bounded ? (effort > 0 ? 1 : -1) : 0});
+  const double position = loop.pushes() ? seen.position[joint] : position_[joint] + loop.velocity() * period_s_;
+  set(joint, {position, loop.velocity(), 0});
 }
 
-void Setpoints::brake() noexcept {
+void Setpoints::brake(const Seen& seen) noexcept {
   on_the_way_ = 0;
   braked_s_ += period_s_;
   brake_.at(braked_s_, braking_);
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const double before = position_[j], velocity_before = velocity_[j];
-    set(j, {braking_.position[j], braking_.velocity[j], braking_.acceleration[j]});
+    if (by_force(j, seen.live)) {
+      follow_force(j, seen);
+    } else {
+      set(j, {braking_.position[j], braking_.velocity[j], braking_.acceleration[j]});
+    }
     note_way(j, before, velocity_before);
   }
 }
@@ -100,6 +121,11 @@ void Setpoints::set(std::size_t joint, const JointSetpoint& wanted) noexcept {
   position_[joint] = wanted.position;
   velocity_[joint] = wanted.velocity;
   acceleration_[joint] = wanted.acceleration;
+}
+
+bool Setpoints::braked() const noexcept {
+  const auto let_go = [](const ForceLoop& loop) { return !loop.pushes() && loop.velocity() == 0; };
+  return braked_s_ >= brake_.duration() && std::ranges::all_of(force_loops_, let_go);
 }
 
 void Setpoints::begin_cycle() noexcept {

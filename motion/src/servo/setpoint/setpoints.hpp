@@ -26,20 +26,24 @@ class Setpoints {
   struct Seen {
     const Setpoint& plan;  ///< of the kinematic joints
     std::span<const double> wanted_force;
-    std::span<const double> position;  ///< measured
-    std::span<const double> force;     ///< measured
-    IndexSet live;                     ///< joints under control
-    bool follows = false;              ///< the plan, and the wanted forces, count
+    std::span<const double> position;  ///< measured, as the next two
+    std::span<const double> velocity;
+    std::span<const double> force;
+    std::span<const double> effort;  ///< of the cycle before
+    IndexSet live;                   ///< joints under control
+    bool follows = false;            ///< the plan, and the wanted forces, count
   };
 
-  /// `parts` must outlive it. `delays`: so many cycles before this one was a joint where it tells in it.
-  Setpoints(const ServoLoopParts& parts, const Wiring::Delays& delays);
+  /// `parts` must outlive it. `delays`: so many cycles before this one was a joint where it tells in it. The drives of
+  /// some joints `follow_themselves`.
+  Setpoints(const ServoLoopParts& parts, const Wiring::Delays& delays, IndexSet follow_themselves);
 
   /// One cycle. Where the plan has no number for a joint, that is a fault, and this joint and those after it are wanted
   /// where they were.
   void step(const Seen& seen, FaultSink& faults) noexcept;
-  /// One cycle of a stop that keeps power: each joint by itself, within its limits.
-  void brake() noexcept;
+  /// One cycle of a stop that keeps power: each joint by itself, within its limits. What is pushed against a part lets
+  /// go of it. `seen.plan` does not count.
+  void brake(const Seen& seen) noexcept;
 
   /// Before all else of a cycle: so far no setpoint has gone anywhere in it.
   void begin_cycle() noexcept;
@@ -52,7 +56,7 @@ class Setpoints {
   /// No joint is under control.
   void let_go() noexcept;
   void begin_braking() noexcept;
-  [[nodiscard]] bool braked() const noexcept { return braked_s_ >= brake_.duration(); }
+  [[nodiscard]] bool braked() const noexcept;
 
   [[nodiscard]] std::span<const double> positions() const noexcept { return {position_.data(), joints_.size()}; }
   [[nodiscard]] const std::array<double, kMaxJoints>& position() const noexcept { return position_; }
@@ -66,11 +70,16 @@ class Setpoints {
   [[nodiscard]] LearnedOffsets& learned() noexcept { return learned_; }
   [[nodiscard]] const LearnedOffsets& learned() const noexcept { return learned_; }
   [[nodiscard]] const ForceLoop& force_loop(std::size_t joint) const noexcept { return force_loops_[joint]; }
+  /// A joint of which the force is kept by an effort beside its law's.
+  [[nodiscard]] bool pushes(std::size_t joint) const noexcept { return force_loops_[joint].pushes(); }
 
  private:
   void choose(const Seen& seen, FaultSink& faults) noexcept;
   [[nodiscard]] bool follow(std::size_t joint, const Seen& seen, bool followed_before, FaultSink& faults) noexcept;
-  void follow_force(std::size_t joint, double wanted, double measured) noexcept;
+  [[nodiscard]] bool by_force(std::size_t joint, IndexSet live) const noexcept {
+    return joints_[joint].method == ControlMethod::Force && has(live, joint);
+  }
+  void follow_force(std::size_t joint, const Seen& seen) noexcept;
   void set(std::size_t joint, const JointSetpoint& wanted) noexcept;
 
   std::span<const ServoJoint> joints_;

@@ -14,7 +14,11 @@ void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
     raise(ServoFault::Kind::EncoderJump, seen.jump, bounds.jump, faults);
   }
   watch_sensor(faults);
-  oscillation_.step(seen.loop, faults);
+  if (seen.bounces) {
+    oscillation_.rest();
+  } else {
+    oscillation_.step(seen.loop, faults);
+  }
   response_.step({.effort = oscillation_.acted(),
                   .position = seen.loop.position,
                   .position_set = seen.following_error + seen.loop.position,

@@ -31,11 +31,25 @@ TEST_F(LawsOfJoints, HaveTheirEffortLimit) {
 
 TEST_F(LawsOfJoints, GiveEffortsWithinTheBound) {
   JointLaws laws(joints_, kPeriod);
-  EXPECT_TRUE(laws.run(0, error(20), faults_));
+  EXPECT_TRUE(laws.run(0, error(20), {}, faults_));
   EXPECT_EQ(laws.effort()[0], 2);
-  EXPECT_TRUE(laws.run(0, error(-200), faults_));
+  EXPECT_TRUE(laws.run(0, error(-200), {}, faults_));
   EXPECT_EQ(laws.effort()[0], -5);
   EXPECT_EQ(laws.effort()[1], 0);
+}
+
+TEST_F(LawsOfJoints, GoOnFromTheEffortThereIsWhereAnEffortBesideBeginsAndEnds) {
+  JointLaws laws(joints_, kPeriod);
+  EXPECT_TRUE(laws.run(0, error(20), {}, faults_));
+  EXPECT_TRUE(laws.run(0, error(0), 1.0, faults_));
+  EXPECT_EQ(laws.effort()[0], 3);
+  EXPECT_TRUE(laws.run(0, error(0), 2.0, faults_));
+  EXPECT_EQ(laws.effort()[0], 4);
+  EXPECT_TRUE(laws.run(0, error(0), -300.0, faults_));
+  EXPECT_EQ(laws.effort()[0], -5) << "both together within the bound";
+  EXPECT_TRUE(laws.run(0, error(0), {}, faults_));
+  EXPECT_EQ(laws.effort()[0], -5);
+  EXPECT_EQ(laws_[0]->engaged, 2);
 }
 
 TEST_F(LawsOfJoints, RestWithWhatTheLawKnowsWithinTheBound) {
@@ -56,16 +70,16 @@ TEST_F(LawsOfJoints, GoOnFromTheEffortThatTheyAreEngagedWithFiltersIncluded) {
   JointLaws laws(joints_, kPeriod);
   laws.engage(0, error(20), 3);
   EXPECT_EQ(laws_[0]->engaged, 1);
-  EXPECT_TRUE(laws.run(0, error(20), faults_));
+  EXPECT_TRUE(laws.run(0, error(20), {}, faults_));
   EXPECT_NEAR(laws.effort()[0], 3, 1e-9);
   laws.engage(2, error(20), 3);  // it has none, and nothing happens
 }
 
 TEST_F(LawsOfJoints, NoNumberIsAFaultAndNoJointHasAnEffort) {
   JointLaws laws(joints_, kPeriod);
-  EXPECT_TRUE(laws.run(0, error(20), faults_));
+  EXPECT_TRUE(laws.run(0, error(20), {}, faults_));
   laws_[1]->answer_nan = true;
-  EXPECT_FALSE(laws.run(1, error(0), faults_));
+  EXPECT_FALSE(laws.run(1, error(0), {}, faults_));
   EXPECT_EQ(laws.effort()[0], 0);
   EXPECT_EQ(laws.effort()[1], 0);
   ASSERT_EQ(faults_.raised.size(), 1U);

@@ -1,3 +1,5 @@
+#include "servo/setpoint/force_loop.hpp"
+
 #include <cmath>
 #include <random>
 
@@ -21,12 +23,14 @@ ForceControl control() {
   return made;
 }
 
-/// Joint 1 under force control, its drive exactly where its setpoint is, above a spring.
+/// Joint 1 under force control, above a spring, with a drive that follows positions itself: exactly.
 class ForceControlled : public ServoLoopTest {
  protected:
   void start(const ForceControl& force = control(), double stiffness_n_mm = 500, const JointBounds& bounds = {}) {
     stiffness_ = stiffness_n_mm;
     ServoLoopParts made = parts();
+    made.actuators[1].mode = DriveMode::CyclicSyncPosition;
+    made.joints[1].law = nullptr;
     made.joints[1].method = ControlMethod::Force;
     made.joints[1].force = force;
     made.joints[1].bounds = bounds;
@@ -155,6 +159,49 @@ TEST_F(ForceControlled, SettlesOverSeededStiffnesses) {
   }
 }
 
+// Nothing brakes what moves before the force is seen: v √(k m).
+TEST(ForceControlParts, AreRefusedWhereTheApproachWouldPressTooHard) {
+  ForceControl fast = control();
+  fast.approach_speed = 50;
+  EXPECT_TRUE(check_force_control(fast, "joint Z")) << "nobody knows what it weighs";
+  fast.mass = 0.0268;
+  auto refused = check_force_control(fast, "joint Z");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(
+      refused.error().message,
+      "servo loop: joint Z approaches at 50, and would press its part with 1830 at a stiffness of 50000, beyond "
+      "its largest force of 500; let it approach at 13.7 or slower, or say what stiffness its parts have");
+  fast.approach_speed = 13.6;
+  EXPECT_TRUE(check_force_control(fast, "joint Z"));
+  fast.approach_speed = 50;
+  fast.stiffness = 3700;
+  EXPECT_TRUE(check_force_control(fast, "joint Z"));
+}
+
+// Without a gain it settles on what no gain was made for.
+TEST_F(ForceControlled, FindsItsGainOverSeededStiffnesses) {
+  std::mt19937 random(11);
+  for (int i = 0; i < 30; ++i) {
+    const double stiffness = std::exp(std::uniform_real_distribution(std::log(100.0), std::log(50'000.0))(random));
+    const double wanted = -std::uniform_real_distribution(30.0, 300.0)(random);
+    surface_ = kSurface;
+    fake = std::make_shared<FakeBus>(5);
+    bus = std::make_shared<ServoBus>(fake);
+    command = {};
+    report = {};
+    ForceControl without = control();
+    without.gain = without.reset_time_s = 0;
+    without.approach_speed = 0.5;
+    start(without, stiffness);
+    command.force[1] = wanted;
+    run(4500);
+    for (int cycles = 0; cycles < 1000; ++cycles) {
+      run(1);
+      ASSERT_NEAR(report.force[1], wanted, 0.02 * -wanted) << stiffness << " N/mm";
+    }
+  }
+}
+
 TEST(ForceControlParts, AreRefusedWithoutASensorOrNumbers) {
   auto simulated = std::make_shared<FakeBus>(5);
   const auto bus = std::make_shared<ServoBus>(simulated);
@@ -171,10 +218,11 @@ TEST(ForceControlParts, AreRefusedWithoutASensorOrNumbers) {
   ASSERT_FALSE(without_sensor);
   EXPECT_EQ(without_sensor.error().message, "servo loop: joint 1 is under force control and has no force sensor");
   made.joints[1].force_sensor = ServoForceSensor{bus, 4, 0.001, 0};
-  made.joints[1].force.gain = 0;
-  auto without_gain = ServoLoop::create(made);
-  ASSERT_FALSE(without_gain);
-  EXPECT_EQ(without_gain.error().message, "servo loop: joint 1 is under force control, which needs a gain above 0");
+  made.joints[1].force.approach_speed = 0;
+  auto without_speed = ServoLoop::create(made);
+  ASSERT_FALSE(without_speed);
+  EXPECT_EQ(without_speed.error().message,
+            "servo loop: joint 1 is under force control, which needs an approach speed above 0");
 }
 
 }  // namespace

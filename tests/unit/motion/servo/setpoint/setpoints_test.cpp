@@ -35,19 +35,24 @@ class ChosenSetpoints : public testing::Test {
       plan_.acceleration[j] = 100 + static_cast<double>(j);
     }
   }
-  void make(const Wiring::Delays& delays = {}) { setpoints_.emplace(parts_, delays); }
-  void step(bool follows, IndexSet live = 0b111) {
-    setpoints_->step({.plan = plan_,
-                      .wanted_force = wanted_force_,
-                      .position = measured_,
-                      .force = force_,
-                      .live = live,
-                      .follows = follows},
-                     faults_);
+  void make(const Wiring::Delays& delays = {}, IndexSet follow_themselves = 0b111) {
+    setpoints_.emplace(parts_, delays, follow_themselves);
   }
+  [[nodiscard]] Setpoints::Seen seen(bool follows, IndexSet live) const {
+    return {.plan = plan_,
+            .wanted_force = wanted_force_,
+            .position = measured_,
+            .velocity = measured_velocity_,
+            .force = force_,
+            .effort = effort_,
+            .live = live,
+            .follows = follows};
+  }
+  void step(bool follows, IndexSet live = 0b111) { setpoints_->step(seen(follows, live), faults_); }
+  void brake() { setpoints_->brake(seen(false, 0b111)); }
   ServoLoopParts parts_;
   Setpoint plan_;
-  std::array<double, 3> wanted_force_{}, measured_{-7, -8, -9}, force_{};
+  std::array<double, 3> wanted_force_{}, measured_{-7, -8, -9}, measured_velocity_{}, force_{}, effort_{};
   RecordedFaults faults_;
   std::optional<Setpoints> setpoints_;
 };
@@ -109,6 +114,46 @@ TEST_F(ChosenSetpoints, JointUnderForceControlGoesWhereItsForceSendsIt) {
   EXPECT_EQ(setpoints_->force_loop(1).state(), ContactState::Touching);
   step(false);
   EXPECT_EQ(setpoints_->force_loop(1).state(), ContactState::Holding) << "no plan, no force";
+}
+
+TEST_F(ChosenSetpoints, JointThatIsPushedIsWantedWhereItIs) {
+  parts_.joints[1].method = ControlMethod::Force;
+  parts_.joints[1].max_effort = 100;
+  make({}, 0);
+  wanted_force_[1] = -50;
+  force_[1] = -20;
+  measured_velocity_[1] = -0.3;
+  for (int i = 0; i < 40; ++i) step(true);
+  EXPECT_TRUE(setpoints_->pushes(1));
+  EXPECT_FALSE(setpoints_->pushes(0));
+  EXPECT_EQ(setpoints_->position()[1], measured_[1]);
+  EXPECT_EQ(setpoints_->velocity()[1], -0.3);
+  const double pushed = setpoints_->force_loop(1).effort();
+  EXPECT_LT(pushed, 0);
+  effort_[1] = -100;
+  step(true);
+  EXPECT_EQ(setpoints_->force_loop(1).effort(), pushed) << "it is pushed as hard as it may be";
+}
+
+TEST_F(ChosenSetpoints, JointThatIsPushedLetsGoOfItsPartAsItStops) {
+  parts_.joints[1].method = ControlMethod::Force;
+  for (ServoJoint& joint : parts_.joints) joint.force.max_acceleration = 1000;
+  make({}, 0);
+  wanted_force_[1] = -50;
+  force_[1] = -20;
+  for (int i = 0; i < 40; ++i) step(true);
+  setpoints_->begin_braking();
+  double away = 0;
+  for (int i = 0; i < 500; ++i) {
+    if (i == 100) force_[1] = 0;
+    const double before = setpoints_->position()[1];
+    brake();
+    if (i > 0) away += setpoints_->position()[1] - before;
+    ASSERT_TRUE(i >= 100 || !setpoints_->braked());
+  }
+  EXPECT_TRUE(setpoints_->braked());
+  EXPECT_FALSE(setpoints_->pushes(1));
+  EXPECT_NEAR(away, 10 * 0.15, 0.1) << "as long as it touched, and for a twentieth of a second more";
 }
 
 TEST_F(ChosenSetpoints, WantedForceWithoutANumberIsNone) {
@@ -204,7 +249,7 @@ TEST_F(ChosenSetpoints, BrakeFromThePlansStatesEachJointWithinItsLimits) {
       const auto position = setpoints_->position();
       const auto velocity = setpoints_->velocity(), acceleration = setpoints_->acceleration();
       setpoints_->begin_cycle();
-      setpoints_->brake();
+      brake();
       for (std::size_t j = 0; j < 2; ++j) {
         const auto& bounds = parts_.joints[j].bounds;
         ASSERT_LE(std::abs(setpoints_->acceleration()[j]), bounds.stop_deceleration * 1.000001);
@@ -225,7 +270,7 @@ TEST_F(ChosenSetpoints, StandAtOnceWhereNothingBoundsTheirStop) {
   step(true);
   setpoints_->begin_braking();
   EXPECT_TRUE(setpoints_->braked());
-  setpoints_->brake();
+  brake();
   EXPECT_EQ(setpoints_->velocity()[0], 0);
   EXPECT_EQ(setpoints_->position()[0], 1);
 }
@@ -235,7 +280,7 @@ TEST_F(ChosenSetpoints, JointThatIsGivenUpHasNoPartInBraking) {
   step(true);
   setpoints_->give_up(1);
   setpoints_->begin_braking();
-  setpoints_->brake();
+  brake();
   EXPECT_EQ(setpoints_->velocity()[1], 0);
   EXPECT_EQ(setpoints_->position()[1], 2);
   EXPECT_GT(setpoints_->velocity()[0], 0);
