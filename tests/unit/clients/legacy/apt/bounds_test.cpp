@@ -150,5 +150,60 @@ TEST(AptStatement, IsRefusedForAPartBehindItsLast) {
   }
 }
 
+/// What cuts is refused while another tool is in the spindle than the program speaks of; nothing else is.
+TEST(AptTool, ThatIsNotInTheSpindleStopsWhatMoves) {
+  Options options;
+  options.reference_mm = {0, 0, 100};
+  const auto said = [&](const std::string& statement) {
+    return refusal_of(program_of("INDIRV/1,0,0\nTOOLNO/7,10\n" + statement), options);
+  };
+  for (const std::string moves : {"GOTO/1,1,1", "GODLTA/1", "GODLTA/1,2,3", "GOHOME"})
+    EXPECT_THAT(said(moves), HasSubstr("TOOLNO says that tool 7 cuts")) << moves;
+  EXPECT_THAT(said("CIRCLE/0,0,10,5\nTLON,GOFWD/(CIRCLE/0,0,10,5),ON,(LINE/0,0,10,5,0,10)"),
+              HasSubstr("TOOLNO says that tool 7 cuts"));
+  for (const std::string rests :
+       {"FEDRAT/100", "RAPID",        "SPINDL/100,CLW", "COOLNT/ON",  "LOADTL/7",    "SELCTL/7",
+        "DELAY/1",    "DWELL/1",      "STOP",           "OPSTOP",     "CYCLE/OFF",   "UNITS/MM",
+        "MULTAX/ON",  "TLAXIS/0,0,1", "TRANS/0,0,1",    "FROM/0,0,0", "CUTCOM/OFF",  "MODE/MILL",
+        "ARCSLP/ON",  "OPSKIP/OFF",   "ORIGIN/0,0,0",   "END",        "END-OF-PATH", "PSIS/(PLANE/0,0,1,0)"})
+    EXPECT_THAT(said(rests), testing::Not(HasSubstr("TOOLNO"))) << rests;
+}
+
+TEST(AptCoordinates, HaveAxesOfUnitLengthThatRoundingMayLeaveOff) {
+  expect_bounds(
+      {
+          {"MULTAX/ON\nTLAXIS/0,0,{}",
+           "a tool axis has the length 1",
+           {"1", "1.0009", "0.9991", "-1"},
+           {"1.0011", "0.9989", "0", "2"}},
+          {"MULTAX/ON\nTLAXIS/0.6,{},0.8", "a tool axis has the length 1", {"0"}, {"1"}},
+          {"GOTO/0,0,0,{},0,1",
+           "is not Z, and no MULTAX/ON is in force",
+           {"0", "0.0000019", "-0.0000019"},
+           {"0.0000021", "-0.0000021"}},
+          {"GOTO/0,0,0,0,{},1",
+           "is not Z, and no MULTAX/ON is in force",
+           {"0", "0.0000019", "-0.0000019"},
+           {"0.0000021", "-0.0000021"}},
+          {"GOTO/0,0,0,0,0,{}", "is not Z, and no MULTAX/ON is in force", {"1"}, {"-1"}},
+          {"UNITS/{}",
+           "is not taken; write MM or INCHES",
+           {"MM", "MILLIMETERS", "INCH", "INCHES"},
+           {"CM", "M", "FEET"}},
+          {"ORIGIN/{},0,0", "ORIGIN that is not 0,0,0", {"0"}, {"1", "-0.001"}},
+      },
+      refused);
+  const auto axis_of = [](const std::string& tool_axis) {
+    return end_of(moves_of("MULTAX/ON\nGOTO/1,1,1," + tool_axis).back()).at("axis").get<std::vector<double>>();
+  };
+  EXPECT_THAT(axis_of("0.000000009,0,1"), testing::ElementsAre(0, 0, 1)) << "rounding of an upright tool";
+  EXPECT_THAT(axis_of("0,0.000000009,1"), testing::ElementsAre(0, 0, 1));
+  EXPECT_THAT(axis_of("0.00000002,0,1"), testing::ElementsAre(testing::DoubleNear(2e-8, 1e-10), 0, 1));
+  EXPECT_THAT(axis_of("0,0.00000002,1"), testing::ElementsAre(0, testing::DoubleNear(2e-8, 1e-10), 1));
+  EXPECT_THAT(axis_of("0,0,-1"), testing::ElementsAre(0, 0, -1));
+  EXPECT_THAT(axis_of("0.6006,0,0.8008"),
+              testing::ElementsAre(testing::DoubleNear(0.6, 1e-9), 0, testing::DoubleNear(0.8, 1e-9)));
+}
+
 }  // namespace
 }  // namespace rmac::apt
