@@ -205,5 +205,22 @@ TEST(AptCoordinates, HaveAxesOfUnitLengthThatRoundingMayLeaveOff) {
               testing::ElementsAre(testing::DoubleNear(0.6, 1e-9), 0, testing::DoubleNear(0.8, 1e-9)));
 }
 
+/// As rs274 has it of arcs: 0.005 mm, or a thousandth of the radius up to 0.5 mm, either way.
+TEST(AptCircle, HasTheRadiusThatItsBeginHas) {
+  const auto begun_at = [](double radius, double x) {
+    return refused(
+        fmt::format("GOTO/{0:.6f},0,10\nINDIRV/0,1,0\nTLON,GOFWD/(CIRCLE/0,0,10,{1:.6f}),ON,(LINE/0,0,10,0,{1:.6f},10)",
+                    x, radius));
+  };
+  for (const double sign : {-1.0, 1.0}) {
+    EXPECT_EQ(begun_at(2, 2 + sign * 0.00499), "taken");
+    EXPECT_THAT(begun_at(2, 2 + sign * 0.00501), HasSubstr("the circle has the radius 2 mm, and the arc begins"));
+    EXPECT_EQ(begun_at(100, 100 + sign * 0.0999), "taken");
+    EXPECT_THAT(begun_at(100, 100 + sign * 0.1001), HasSubstr("the circle has the radius 100 mm"));
+    EXPECT_EQ(begun_at(9000, 9000 + sign * 0.4999), "taken");
+    EXPECT_THAT(begun_at(9000, 9000 + sign * 0.5001), HasSubstr("the circle has the radius 9000 mm"));
+  }
+}
+
 }  // namespace
 }  // namespace rmac::apt

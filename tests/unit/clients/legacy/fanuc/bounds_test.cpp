@@ -1,5 +1,9 @@
 #include "unit/clients/legacy/bounds.hpp"
 
+#include <array>
+#include <cmath>
+#include <map>
+
 #include "unit/clients/legacy/fanuc/imported.hpp"
 
 namespace rmac::fanuc {
@@ -182,6 +186,103 @@ TEST(FanucVariable, OfTheSystemFollowsEachCode) {
   EXPECT_EQ(read("", 4115), 1);
   EXPECT_EQ(read("S1234", 4119), 1234);
   EXPECT_EQ(read("T12", 4120), 12);
+}
+
+/// `a * b + c` and its like of all operators: of two that bind alike the left one comes first; comparisons bind least.
+TEST(FanucValue, BindsEveryTwoOperatorsAsTheManualHasThem) {
+  struct Binding {
+    std::string_view word;
+    int level;
+    double (*apply)(double, double);
+  };
+  const std::vector<Binding> operators{
+      {"*", 3, [](double a, double b) { return a * b; }},
+      {"/", 3, [](double a, double b) { return a / b; }},
+      {"MOD", 3, [](double a, double b) { return std::fmod(a, b); }},
+      {"AND", 3, [](double a, double b) { return static_cast<double>(static_cast<int>(a) & static_cast<int>(b)); }},
+      {"+", 2, [](double a, double b) { return a + b; }},
+      {"-", 2, [](double a, double b) { return a - b; }},
+      {"OR", 2, [](double a, double b) { return static_cast<double>(static_cast<int>(a) | static_cast<int>(b)); }},
+      {"XOR", 2, [](double a, double b) { return static_cast<double>(static_cast<int>(a) ^ static_cast<int>(b)); }}};
+  const std::vector<std::array<double, 3>> numbers{{12, 6, 3}, {8, 2, 1}, {30, 15, 5}, {24, 12, 4}};
+  for (const auto& first : operators) {
+    for (const auto& second : operators) {
+      for (const auto& [a, b, c] : numbers) {
+        const double inner = second.level > first.level ? second.apply(b, c) : first.apply(a, b);
+        if (inner < 0 || inner != std::round(inner)) continue;  // AND and its like take none
+        const double wanted = second.level > first.level ? first.apply(a, inner) : second.apply(inner, c);
+        if (!std::isfinite(wanted)) continue;
+        const auto text = fmt::format("{} {} {} {} {}", a, first.word, b, second.word, c);
+        EXPECT_NEAR(value_of("#1", "#1=" + text + "\n"), std::round(wanted * 1000) / 1000, 1e-9) << text;
+        for (const auto& [compares, is] : std::map<std::string, bool>{
+                 {"EQ", true}, {"NE", false}, {"GE", true}, {"LE", true}, {"GT", false}, {"LT", false}}) {
+          if (wanted != std::round(wanted) || wanted < 0) continue;
+          const auto condition = fmt::format("IF [{} {} {} + 0] THEN #5=1.\nG0 X#5", text, compares, wanted);
+          EXPECT_EQ(!xs_of(condition).empty(), is) << condition;
+        }
+      }
+    }
+  }
+}
+
+/// What is half a statement says what is missing, and where.
+TEST(FanucStatement, SaysWhatIsMissing) {
+  for (const auto& [lines, why] : std::vector<std::pair<std::string, std::string>>{
+           {"#1", "5:3: = expected"},
+           {"#1 5", "5:5: = expected"},
+           {"#1+2=5", "5:3: = expected"},
+           {"IF [1 EQ 2] THEN #1", "= expected"},
+           {"IF [1 EQ 2] THEN #1 5", "= expected"},
+           {"IF", "5:3: a condition stands in [ ]"},
+           {"IF #1 EQ 1 GOTO 5", "5:4: a condition stands in [ ]"},
+           {"WHILE #1 EQ 1 DO1\nEND1", "WHILE has its condition in [ ]"},
+           {"IF [5] GOTO 5", "5:4: a condition compares, as in [#1 EQ 2]; this is a value"},
+           {"IF [1 EQ 1]", "GOTO or THEN stands behind the condition of IF"},
+           {"IF [1 EQ 2] G0 X1.", "GOTO or THEN stands behind the condition of IF"},
+           {"IF [1 EQ 1] THEN", "behind THEN a variable is set"},
+           {"IF [1 EQ 2] THEN G0 X1.", "behind THEN a variable is set"},
+           {"IF [1 EQ 2] GOTO 5 X1.", "nothing but a comment"},
+           {"GOTO 5 X1.\nN5", "nothing but a comment"},
+           {"DPRNT", "what is printed stands in [ ]"},
+           {"DPRNT X1", "what is printed stands in [ ]"},
+           {"DPRNT[X#1[44]", "what is printed stands in [ ]"},
+           {"DPRNT[X1] X1.", "nothing but a comment"},
+           {"POPEN 5", "nothing but a comment"},
+           {"SETVN 101[A]", "names of variables are not taken"},
+           {"N1234567890 G0 X1.", "N has a number of 1 to 9 digits"},
+           {"N G0 X1.", "N has a number of 1 to 9 digits"},
+           {"G65 A1.", "G65 and G66 need P"},
+           {"G65 P7 A1. A2.", "two A words in one call"},
+           {"G65 P7 G0", "another G code beside G65 or G66"},
+           {"G65 P8", "O8 is not in this file, and no other is read"},
+           {"G65 P9700", "Makers of probes have theirs from O9700 on"},
+           {"G65 P9999", "Makers of probes have theirs from O9700 on"},
+           {"G65 P9023", "Makers of probes have theirs from O9700 on"},
+           {"G65 P9699", "O9699 is not in this file, and no other is read"},
+           {"G66 P7\nG66 P7", "G66 within G66 is not taken"},
+           {"M98 P7 M99", "one of M97, M98 and M99 in a block"},
+           {"G52", "G52 needs X, Y or Z"},
+           {"G91 G52 X1.", "G52 under G91"},
+           {"G92", "G92 needs X, Y or Z"},
+           {"G54.1", "G54.1 needs P"},
+           {"G54.1 G4 P1.", "G54.1 needs P"},
+           {"G54.1 P1 G73 X1. R0 Z-1. Q1.", "a block without another P"},
+           {"G10 P1 X0", "of G10 there are L2 and L20"},
+           {"G10 L2 X0", "G10 needs P, the work system"},
+       })
+    EXPECT_THAT(refused(lines), HasSubstr(why)) << lines;
+  for (const std::string taken :
+       {"DPRNT[X#1[44]]", "DPRNT[]", "BPRNT[A]", "POPEN", "PCLOS", "IF [1 EQ 2] GOTO 5", "IF [1 EQ 2] THEN #1=1",
+        "N123456789 G0 X1.", "/5 G0 X1.", "/N7 G0 X1.", "G66 P7\nG67\nG66 P7\nG67"})
+    EXPECT_EQ(refused(taken), "taken") << taken;
+}
+
+/// A modal call ends where the program that began it returns, and by G67.
+TEST(FanucCall, OfG66EndsWithTheProgramThatBeganIt) {
+  const std::string called = "O7\nG0 Z5.\nG0 Z10.\nM99\n", begins = "O8\nG66 P7\nG0 X2.\nM99\n";
+  const auto count = [&](const std::string& lines) { return ends_of(lines, {}, called + begins).size(); };
+  EXPECT_EQ(count("G66 P7\nG0 X1.\nG0 X2.\nG67\nG0 X3."), 2U * 3 + 1);
+  EXPECT_EQ(count("M98 P8\nG0 X3."), 3U + 1) << "it was O8's";
 }
 
 }  // namespace

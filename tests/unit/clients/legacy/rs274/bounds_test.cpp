@@ -1,5 +1,8 @@
 #include "unit/clients/legacy/bounds.hpp"
 
+#include <array>
+#include <cmath>
+
 #include "unit/clients/legacy/rs274/imported.hpp"
 
 namespace rmac::rs274 {
@@ -168,6 +171,58 @@ TEST(Rs274Bounds, OfNesting) {
   };
   EXPECT_EQ(refused(blocks(100)), "taken");
   EXPECT_NE(refused(blocks(101)), "taken");
+}
+
+TEST(Rs274Bounds, OfFunctions) {
+  expect_bounds(
+      {
+          {"#1=[0 ** {}]", "zero has no negative power", {"0", "0.5", "1", "2"}, {"-0.5", "-1"}},
+          {"#1=[[0-2] ** {}]", "a negative number has no such power", {"0", "1", "2", "-3"}, {"0.5", "-1.5"}},
+          {"#1=SQRT[{}]", "the square root of a negative number", {"0", "0.5", "4"}, {"-0.001"}},
+          {"#1=LN[{}]", "the logarithm of a number that is not positive", {"0.001", "0.5", "1"}, {"0", "-1"}},
+          {"#1=ASIN[{}]", "the arc of a number beyond -1 to 1", {"-1", "0", "1"}, {"-1.001", "1.001", "2"}},
+          {"#1=ACOS[{}]", "the arc of a number beyond -1 to 1", {"-1", "0", "1"}, {"-1.001", "1.001", "2"}},
+          {"#1=[1/{}]", "a division by zero", {"0.001", "1", "-1"}, {"0"}},
+          {"#1=[1 MOD {}]", "MOD by zero", {"0.001", "1", "-1"}, {"0"}},
+      },
+      refused);
+}
+
+struct Binding {
+  std::string_view word;
+  int level;  ///< what is greater binds more, as LinuxCNC's manual has it
+  double (*apply)(double, double);
+};
+
+/// `a * b + c` and its like of all operators: of two that bind alike the left one comes first.
+TEST(Rs274Expression, BindsEveryTwoOperatorsAsTheManualHasThem) {
+  const std::vector<Binding> operators{{"**", 5, [](double a, double b) { return std::pow(a, b); }},
+                                       {"*", 4, [](double a, double b) { return a * b; }},
+                                       {"/", 4, [](double a, double b) { return a / b; }},
+                                       {"MOD", 4, [](double a, double b) { return std::fmod(std::fmod(a, b) + b, b); }},
+                                       {"+", 3, [](double a, double b) { return a + b; }},
+                                       {"-", 3, [](double a, double b) { return a - b; }},
+                                       {"EQ", 2, [](double a, double b) { return std::abs(a - b) < 1e-4 ? 1.0 : 0.0; }},
+                                       {"NE", 2, [](double a, double b) { return std::abs(a - b) < 1e-4 ? 0.0 : 1.0; }},
+                                       {"GT", 2, [](double a, double b) { return a > b ? 1.0 : 0.0; }},
+                                       {"GE", 2, [](double a, double b) { return a >= b ? 1.0 : 0.0; }},
+                                       {"LT", 2, [](double a, double b) { return a < b ? 1.0 : 0.0; }},
+                                       {"LE", 2, [](double a, double b) { return a <= b ? 1.0 : 0.0; }},
+                                       {"AND", 1, [](double a, double b) { return a != 0 && b != 0 ? 1.0 : 0.0; }},
+                                       {"OR", 1, [](double a, double b) { return a != 0 || b != 0 ? 1.0 : 0.0; }},
+                                       {"XOR", 1, [](double a, double b) { return (a != 0) != (b != 0) ? 1.0 : 0.0; }}};
+  const std::vector<std::array<double, 3>> numbers{{5, 2, 3}, {2, 2, 1}, {1, 3, 3}, {7, 3, 2}, {4, 1, 4}};
+  for (const auto& first : operators) {
+    for (const auto& second : operators) {
+      for (const auto& [a, b, c] : numbers) {
+        const double wanted =
+            second.level > first.level ? first.apply(a, second.apply(b, c)) : second.apply(first.apply(a, b), c);
+        if (!(std::abs(wanted) < 1e5)) continue;
+        const auto text = fmt::format("[{} {} {} {} {}]", a, first.word, b, second.word, c);
+        EXPECT_NEAR(value_of(text), wanted, 1e-6) << text;
+      }
+    }
+  }
 }
 
 }  // namespace
