@@ -285,5 +285,47 @@ TEST(FanucCall, OfG66EndsWithTheProgramThatBeganIt) {
   EXPECT_EQ(count("M98 P8\nG0 X3."), 3U + 1) << "it was O8's";
 }
 
+/// A cycle's levels were meant in the coordinates where it began: whatever shifts those along any axis ends it.
+TEST(FanucCycle, EndsWhereItsCoordinatesAreShifted) {
+  for (const std::string shift : {"G52 X5.", "G52 Y5.", "G52 Z5.", "G92 X5.", "G92 Y5.", "G92 Z5.", "G55"}) {
+    Options options = bounded();
+    options.offsets[1] = {1, 2, 3};
+    EXPECT_THAT(refusal_of(program_of("G81 X1. R0 Z-1.\n" + shift + "\nX2."), options),
+                HasSubstr("in the midst of a cycle"))
+        << shift;
+  }
+  EXPECT_EQ(refused("G81 X1. R0 Z-1.\nG52 X0\nX2."), "taken") << "nothing is shifted";
+}
+
+TEST(FanucBounds, OfOffsetsThatAreNotKnown) {
+  for (const std::string lines : {"G91 G10 L2 P2 X1.", "G91 G10 L2 P2 Y1.", "G91 G10 L20 P3 Z1."})
+    EXPECT_THAT(refusal_of(program_of(lines)), HasSubstr("what this is added to (G91) is not known here")) << lines;
+  EXPECT_EQ(refusal_of(program_of("G10 L2 P2 X1. Y0 Z0\nG91 G10 L2 P2 X1.")), "taken");
+  expect_bounds({{"D{}", "D is the number of an offset", {"0", "1", "999999"}, {"-1", "1.5", "1000000"}}}, refused);
+}
+
+/// Directions are no lengths: what is computed of one is not rounded to an increment, of any of its words.
+TEST(FanucValue, OfADirectionIsNotRounded) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string words = axis == 0 ? "I[1/3] J0 K1." : axis == 1 ? "I0 J[1/3] K1." : "I1. J0 K[1/3]";
+    const auto moves = legacy::moves_in(imported(program_of("G43.5\nG1 X1. " + words)));
+    ASSERT_FALSE(moves.empty());
+    const auto axes = legacy::end_of(moves.back()).at("axis").get<std::vector<double>>();
+    EXPECT_NEAR(axes.at(axis) / axes.at(axis == 2 ? 0 : 2), 1.0 / 3, 1e-8) << words;
+  }
+}
+
+TEST(HaasHoles, AreDrilledByEachOfTheCycles) {
+  for (const std::string cycle :
+       {"G73 R0 Z-1. Q1.", "G81 R0 Z-1.", "G82 R0 Z-1. P1", "G83 R0 Z-1. Q1.", "G85 R0 Z-1.", "G89 R0 Z-1. P1"}) {
+    EXPECT_EQ(refused_of_haas(cycle + " L0\nG70 I5. L3"), "taken") << cycle;
+    EXPECT_THAT(refused_of_haas(cycle + "\nG12 I9. Z-1. D1 F100."),
+                HasSubstr("a pocket while a canned cycle is in force"))
+        << cycle;
+  }
+  for (const std::string none : {"G80", "G0 X1.", "G1 X1.", "G2 X1. I0.5"})
+    EXPECT_THAT(refused_of_haas(none + "\nG70 I5. L3"), HasSubstr("no cycle how they are drilled")) << none;
+}
+
 }  // namespace
 }  // namespace rmac::fanuc

@@ -225,5 +225,11 @@ TEST(Rs274Expression, BindsEveryTwoOperatorsAsTheManualHasThem) {
   }
 }
 
+TEST(Rs274Bounds, OfNumberedPrograms) {
+  expect_bounds({{"M98 P{0}\nM2\nO{0}\nG0 X1\nM99", "", {"0", "1", "99999"}, {}},
+                 {"M98 P7 L{}\nM2\nO7\nG0 X1\nM99", "", {"0", "1", "5"}, {}}},
+                refused);
+}
+
 }  // namespace
 }  // namespace rmac::rs274
