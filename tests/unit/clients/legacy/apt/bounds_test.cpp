@@ -222,5 +222,31 @@ TEST(AptCircle, HasTheRadiusThatItsBeginHas) {
   }
 }
 
+TEST(AptPassages, SayWhatIsMissing) {
+  for (const auto& [lines, why] : std::vector<std::pair<std::string, std::string>>{
+           {"M=MACRO\nTERMAC\nM=MACRO", "MACRO M is there already"},
+           {"DEFSUB/1\nENDSUB\nDEFSUB/1", "DEFSUB #1 is there already"},
+           {"M=MACRO\nN=MACRO", "a MACRO or DEFSUB within another one"},
+           {"M=MACRO\nDEFSUB/1", "a MACRO or DEFSUB within another one"},
+           {"M=MACRO", "FINI before the end of M"},
+           {"MACRO", "a MACRO has a name: NAME=MACRO"},
+           {"TERMAC", "TERMAC without what it ends"},
+           {"ENDSUB", "ENDSUB without what it ends"},
+           {"CALL/M", "there is no macro M before this"},
+           {"CALSUB/1", "there is no DEFSUB/1 before this"},
+           {"M=MACRO/A\nGOTO/A,0,0\nTERMAC\nCALL/M", "A of M is not given"},
+           {"M=MACRO/A\nGOTO/A,0,0\nTERMAC\nCALL/M,B=2", "this is no parameter of M"},
+           {"M=MACRO/A\nGOTO/A,0,0\nTERMAC\nCALL/M,2", "this is no parameter of M"},
+           {"M=MACRO/5\nTERMAC", "this is no parameter's name"},
+           {"DEFSUB/1,A\nENDSUB", "this is no parameter's name"},
+           {"INDEX/1\nINDEX/1", "INDEX/1 has no COPY yet"},
+           {"INDEX/1", "INDEX/1 has no COPY"},
+           {"INDEX/1\nCOPY/1,MODIFY,2", "COPY is taken with SAME, TRANSL, XYROT, YZROT and ZXROT"},
+           {"INDEX/1\nCOPY/1,TRANSL,1,2", "COPY lacks z"},
+       })
+    EXPECT_THAT(refused(lines), HasSubstr(why)) << lines;
+  EXPECT_EQ(refused("M=MACRO/A,B=2\nGOTO/A,B,0\nTERMAC\nCALL/M,A=1\nCALL/M,A=1,B=3"), "taken");
+}
+
 }  // namespace
 }  // namespace rmac::apt

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "unit/clients/legacy/fanuc/imported.hpp"
 
@@ -325,6 +326,39 @@ TEST(HaasHoles, AreDrilledByEachOfTheCycles) {
   }
   for (const std::string none : {"G80", "G0 X1.", "G1 X1.", "G2 X1. I0.5"})
     EXPECT_THAT(refused_of_haas(none + "\nG70 I5. L3"), HasSubstr("no cycle how they are drilled")) << none;
+}
+
+/// Arcs of angles are within a turn, from zero on.
+TEST(FanucValue, HasAnglesOfEveryQuarter) {
+  for (double degrees = 0; degrees < 360; degrees += 0.5) {
+    const double angle = degrees * std::numbers::pi / 180;
+    const auto near = [&](const std::string& value, double wanted) {
+      EXPECT_NEAR(value_of("#1", "#1=" + value + "\n"), wanted, 1.1e-3) << value;
+    };
+    near(fmt::format("ATAN[{:.9f}]/[{:.9f}]", std::sin(angle), std::cos(angle)), degrees);
+    if (degrees <= 90 || degrees >= 270) near(fmt::format("ASIN[{:.9f}]", std::sin(angle)), degrees);
+    if (degrees <= 180) near(fmt::format("ACOS[{:.9f}]", std::cos(angle)), degrees);
+  }
+}
+
+TEST(FanucStatement, OfLookAheadAndDwellsSaysWhatIsMissing) {
+  for (const auto& [lines, why] : std::vector<std::pair<std::string, std::string>>{
+           {"G5", "G5 needs P, as in G5 P10000"},
+           {"G5.1", "G5.1 needs Q, as in G5.1 Q1"},
+           {"G8", "G8 needs P, as in G8 P1"},
+           {"G4 X1. P1", "a dwell has one time; take this or P out"},
+           {"#0=1.", "#0 is always vacant; nothing sets it"},
+           {"M98 P50007", "P50007"},
+       })
+    EXPECT_THAT(refusal_of(program_of(lines, "O7\nM99\nO50007\nM99\n"), bounded()), HasSubstr(why)) << lines;
+  const auto times = [](const std::string& call) {
+    return xs_of("#100=0\n" + call + "\nG0 X#100", "O7\n#100=#100+1\nM99\n").back();
+  };
+  EXPECT_EQ(times("M98 P7"), 1);
+  EXPECT_EQ(times("M98 P50007"), 5) << "older controls have the times before the four digits of the number";
+  EXPECT_EQ(times("M98 P120007"), 12);
+  EXPECT_EQ(times("M98 P7 L3"), 3);
+  EXPECT_EQ(times("G65 P7 L4"), 4);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "unit/clients/legacy/rs274/imported.hpp"
 
@@ -229,6 +230,94 @@ TEST(Rs274Bounds, OfNumberedPrograms) {
   expect_bounds({{"M98 P{0}\nM2\nO{0}\nG0 X1\nM99", "", {"0", "1", "99999"}, {}},
                  {"M98 P7 L{}\nM2\nO7\nG0 X1\nM99", "", {"0", "1", "5"}, {}}},
                 refused);
+}
+
+/// What is half a block, or too much of one, says what is missing or what to leave out.
+TEST(Rs274Block, SaysWhatIsMissing) {
+  for (const auto& [lines, why] : std::vector<std::pair<std::string, std::string>>{
+           {"G4", "G4 needs P, its time in seconds"},
+           {"G2 X4 R2 I2", "an arc has a radius or a centre, not both"},
+           {"G2 X4 R2 J2", "an arc has a radius or a centre, not both"},
+           {"G2 X4 R0", "an arc of radius 0"},
+           {"G90.1 G2 X4 I2", "under G90.1 an arc has both"},
+           {"G90.1 G2 X4 J2", "under G90.1 an arc has both"},
+           {"G5.1 X4 J2", "G5.1 needs I and J"},
+           {"G5.1 X4 I2", "G5.1 needs I and J"},
+           {"G5.1 X4", "G5.1 needs I and J"},
+           {"G18 G5.1 X4 I2 J2", "splines lie in the XY plane"},
+           {"G19 G5.2 P1", "splines lie in the XY plane"},
+           {"G5.1 X4 I2 J2 Z1", "a spline has no Z"},
+           {"G5.2 P1\nX1 Y1 Z1 P1", "a spline has no Z"},
+           {"G5.2 P1\nX1 Y1", "a control point of a NURBS has X, Y and its weight P"},
+           {"G5.2 P1\nX1 P1", "a control point of a NURBS has X, Y and its weight P"},
+           {"G5.2 P1\nY1 P1", "a control point of a NURBS has X, Y and its weight P"},
+           {"G5.2 P1\nM3", "between G5.2 and G5.3 each block is a control point"},
+           {"G5.2 P1\nG1 X1 Y1 P1", "between G5.2 and G5.3 each block is a control point"},
+           {"G93 G5.1 X4 I2 J2 F1", "a spline under G93 is not taken"},
+           {"G93 G81 X1 R0 Z-1 F1", "a canned cycle has a way of many moves"},
+           {"G81 X1 Z-1", "the first block of a canned cycle needs R"},
+           {"G81 X1 R0", "the first block of a canned cycle needs Z"},
+           {"G82 X1 R0 Z-1", "the first block of a canned cycle needs P"},
+           {"G83 X1 R0 Z-1", "the first block of a canned cycle needs Q"},
+           {"G81 R0", "a canned cycle needs X, Y or Z"},
+           {"G53 G81 X1 R0 Z-1", "G53 goes with G0 and G1 only"},
+           {"G86 X1 R0 Z-1 P1", "G86 stops the spindle, which does not turn"},
+           {"G41.1 G1 X9", "G41.1 and G42.1 need D"},
+           {"G41 G1 X9", "does not say which tool is in the spindle"},
+           {"G41 D2 G1 X9", "tool 2"},
+           {"M62", "M62 needs P, the number of an output"},
+           {"M66 L3 Q1", "M66 needs P"},
+           {"M66 P0 Q1", "M66 is taken with L3 and L4"},
+           {"M66 P0 L3", "M66 needs Q"},
+           {"M98", "M98 needs P"},
+           {"M98 P7 M3", "M98 has a block of its own"},
+           {"M70 M3", "M70 has a block of its own"},
+           {"M6", "M6 without a T before it"},
+           {"G10 L2 X1", "G10 needs P, the work system"},
+           {"G10 P1 X1", "of G10 there are L2 and L20"},
+           {"G10 L2 P1 R5", "a work system that is turned (R) is not taken yet"},
+           {"G92", "G92 needs X, Y or Z"},
+           {"M50 P0", "overrides belong to the operator"},
+           {"M53 P0", "overrides belong to the operator"},
+           {"M52 P1", "overrides belong to the operator"},
+           {"M52", "overrides belong to the operator"},
+           {"#1=", "a number expected"},
+           {"#1=[1+]", "a number expected"},
+           {"#1 5", "= expected"},
+           {"#1=ATAN[1]", "ATAN has two values: ATAN[y]/[x]"},
+           {"#1=ATAN[1]2", "ATAN has two values: ATAN[y]/[x]"},
+           {"G1 X1.2.3", "a number with more than one decimal point"},
+           {"G80\nX1", "no G0, G1 or other motion is in force"},
+           {"G80 N5", "a line's number stands at its begin"},
+           {"G1 X1 O5", "an O word begins its line"},
+           {"G1 U1", "axis U is not taken yet"},
+           {"G1 V1", "axis V is not taken yet"},
+           {"G1 W1", "axis W is not taken yet"},
+           {"G1 X1 !", "a word begins with a letter, not with !"},
+           {"G1 X1 ~", "a word begins with a letter, not with ~"},
+           {"G1 X1 \x80", "a character that no program has"},
+           {"O X1", "O is followed by a number, a <name> or [a value]"},
+           {"o<> if[1]", "a name stands in < >"},
+           {"o1 endwhile", "is open"},
+           {"o1 else", "is open"},
+           {"o1 endif", "is open"},
+       })
+    EXPECT_THAT(refused(lines), testing::HasSubstr(why)) << lines;
+  for (const std::string taken :
+       {"M50", "M50 P1", "M51", "M53 P1", "M52 P0", "M48", "G2 X4 R2", "G2 X4 R-3", "G90.1 G2 X4 I2 J0",
+        "G5.1 X4 I2 J2", "G5.1 X4 I0 J2", "G81 X1 R0 Z-1", "M3 S100\nG86 X1 R0 Z-1 P1", "M62 P3", "M66 P0 L3 Q1"})
+    EXPECT_EQ(refused(taken), "taken") << taken;
+}
+
+/// Whole turns of angles and their arcs: ATAN is within half a turn either way.
+TEST(Rs274Expression, HasAnglesOfEveryQuarter) {
+  for (int degrees = -179; degrees <= 180; ++degrees) {
+    const double angle = degrees * std::numbers::pi / 180;
+    EXPECT_NEAR(value_of(fmt::format("[ATAN[{:.9f}]/[{:.9f}]]", std::sin(angle), std::cos(angle))), degrees, 1e-5)
+        << degrees;
+    EXPECT_NEAR(value_of(fmt::format("[SIN[{}]]", degrees)), std::sin(angle), 1e-6) << degrees;
+    EXPECT_NEAR(value_of(fmt::format("[COS[{}]]", degrees)), std::cos(angle), 1e-6) << degrees;
+  }
 }
 
 }  // namespace
