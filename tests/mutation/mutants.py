@@ -27,7 +27,7 @@ for pair in ("true false", "min max", "first second", "front back", "sin cos", "
     SIBLINGS |= {one: other, other: one}
 # Nobody notices another capacity or another text of a log.
 NOT_MUTATED = {"static_assert", "reserve", "shrink_to_fit", "spdlog", "assert", "using", "template", "operator", "friend"}
-COMMUTATIVE = {"min", "max", "hypot", "swap"}
+COMMUTATIVE = {"min", "max", "hypot", "swap", "dot"}
 KEYWORDS = {"if", "for", "while", "switch", "return", "case", "else", "do", "break", "continue", "throw", "new", "delete",
             "const", "auto", "static", "constexpr", "struct", "class", "enum", "namespace", "default", "goto", "try", "catch",
             "extern", "public", "private", "protected", "inline", "typename", "concept", "requires", "co_return"}
@@ -78,6 +78,7 @@ class Reader:
         self._pair()
         self._leave_template_arguments()
         self._leave_declarations_and_logs()
+        self.blocks = [(begin, end) for begin, end in self.statements() if self.text(end) == "{"]
 
     def text(self, at):
         return self.tokens[at].text if 0 <= at < len(self.tokens) else ""
@@ -168,6 +169,17 @@ class Reader:
             at = self.partner[at] + 1 if self.text(at) in self.OPEN and at in self.partner and at != closing else at + 1
         return parts
 
+    def returns_truth(self, at):
+        """Whether the function around this token is declared to return bool: - of that is the same again."""
+        around = [(begin, end) for begin, end in self.blocks if end < at < self.partner.get(end, 0)]
+        for begin, end in reversed(around):
+            header = [self.text(i) for i in range(begin, end)]
+            if set(header) & {"if", "for", "while", "switch", "else", "do", "try", "catch"}:
+                continue
+            is_lambda = "[" in header
+            return header[-1:] == ["bool"] if is_lambda else "bool" in header[:header.index("(")] if "(" in header else False
+        return False
+
     def end_of_expression(self, at):
         """The token before the comma, semicolon, colon or closing bracket that ends what begins here."""
         while at < len(self.tokens):
@@ -243,6 +255,7 @@ def mutants_of(path, source):
                     add(at + 1, last, "{}", "returns nothing")
                     logic = any(reader.text(i) in ("<", "<=", ">", ">=", "==", "!=", "&&", "||", "!")
                                 for i in range(at + 1, last + 1))
+                    logic = logic or reader.returns_truth(at)
                     add(at + 1, last, f"{'!' if logic else '-'}({value})", "result negated")
     for begin, end in reader.statements():
         if reader.alone[begin] or reader.text(end) != ";" or reader.tokens[begin].kind != "name":

@@ -60,6 +60,14 @@ class Mutants(unittest.TestCase):
         self.assert_mutant("return a;", "return -(a);")
         self.assert_mutant("return a;", "return {};")
 
+    def test_truth_is_negated_as_truth(self):
+        for source in ("bool f(int a) {\n  return a;\n}\n", "bool C::f(int a) const {\n  for (;;) {\n    if (b) return a;\n  }\n}\n",
+                       "void f() {\n  auto g = [](int a) -> bool { return a; };\n}\n"):
+            self.assertIn(source.replace("return a", "return !(a)"), changed(source))
+            self.assertNotIn(source.replace("return a", "return -(a)"), changed(source))
+        for source in ("int f(bool a) {\n  return a;\n}\n", "bool f() {\n  auto g = [](int a) { return a; };\n}\n"):
+            self.assertIn(source.replace("return a", "return -(a)"), changed(source))
+
     def test_constants_change(self):
         self.assert_mutant("g(0.5);", "g((0.5 + 1));")
         self.assert_mutant("g(0.5);", "g((-0.5));")
@@ -69,7 +77,8 @@ class Mutants(unittest.TestCase):
     def test_arguments_and_branches_are_swapped(self):
         self.assert_mutant("g(a, h(b, c), d);", "g(h(b, c), a, d);")
         self.assert_mutant("g(a ? b : c);", "g(a ? c : b);")
-        self.assertNotIn(body("std::max(b, a);"), changed(body("std::max(a, b);")))
+        for symmetric in ("std::max", "dot"):
+            self.assertNotIn(body(f"{symmetric}(b, a);"), changed(body(f"{symmetric}(a, b);")))
 
 
 if __name__ == "__main__":

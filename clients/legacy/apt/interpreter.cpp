@@ -23,7 +23,6 @@ void require_word(Arguments& arguments, std::initializer_list<std::string_view> 
   const std::string& word = arguments.word("its word");
   if (std::find(words.begin(), words.end(), word) == words.end())
     refuse(arguments.last_place(), fmt::format("{}/{}: {}", arguments.major(), word, why));
-  arguments.end();
 }
 
 void require_no_shift(Arguments& arguments) {
@@ -34,7 +33,6 @@ void require_no_shift(Arguments& arguments) {
         "ORIGIN that is not 0,0,0: CAM systems do not agree on what it shifts; have the CAM system write coordinates "
         "of the part, or use TRANS");
   }
-  arguments.end();
 }
 
 }  // namespace

@@ -299,9 +299,10 @@ void Interpreter::move_by(Block& block, int code, std::size_t place) {
   doubts_.require_whole(block, code, rules_.cycles, place);
   if (code == 0 || code == 10) return motions_.straight(block, code == 0, place);
   if (code == 20 || code == 30) return motions_.arc(block, code == 30, place);
-  if (code >= 50 && code <= 53 && modes_.inverse_time)
-    refuse(place, "a spline under G93 is not taken; write G94 and F before it");
-  if (code >= 50 && code <= 53) return splines_.move(block, code, before, place);
+  if (code >= 50 && code <= 53) {
+    if (modes_.inverse_time) refuse(place, "a spline under G93 is not taken; write G94 and F before it");
+    return splines_.move(block, code, before, place);
+  }
   if (compensation_.on() || compensation_.leaving())
     refuse(place,
            "a cycle goes by where the tool is; end cutter radius compensation by G40 and a straight move before it");

@@ -23,26 +23,26 @@ std::size_t place_of_polar(const Block& block) {
   return (block.polar_radius() ? block.polar_radius() : block.polar_angle())->place;
 }
 
+PolarEnd from_zero(double distance, double angle_rad) {
+  return {distance * std::cos(angle_rad), distance * std::sin(angle_rad)};
+}
+
 }  // namespace
 
 PolarEnd polar_end(const Block& block, const Modes& modes, const ProgramTip& tip) {
   const auto &radius = block.polar_radius(), &angle = block.polar_angle();
   const std::size_t place = place_of_polar(block);
-  const bool goes_on = modes.incremental || !radius || !angle;
-  if (goes_on && !(tip[0] && tip[1])) {
+  if (!modes.incremental && radius && angle) return from_zero(radius->value, angle->value * kDegree);
+  if (!(tip[0] && tip[1])) {
     refuse(place,
            "where the tool is now is not known, so neither is where this leads; write both distance and angle "
            "under G90, or a G0 to X, Y and Z before it");
   }
-  const double x = goes_on ? *tip[0] : 0, y = goes_on ? *tip[1] : 0;
-  const double distance = std::hypot(x, y);
-  if (goes_on && distance == 0 && (modes.incremental || !angle))
+  const double distance = std::hypot(*tip[0], *tip[1]), now = std::atan2(*tip[1], *tip[0]);
+  if (distance == 0 && (modes.incremental || !angle))
     refuse(place, "the tool is at zero, where it has no angle; write the angle under G90, or X and Y");
-  const bool adds = modes.incremental;
-  const double to_distance = (radius ? radius->value : adds ? 0 : distance) + (adds ? distance : 0);
-  const double now = goes_on ? std::atan2(y, x) : 0;
-  const double to = (angle ? angle->value * kDegree : adds ? 0 : now) + (adds ? now : 0);
-  return {to_distance * std::cos(to), to_distance * std::sin(to)};
+  if (!modes.incremental) return from_zero(radius ? radius->value : distance, angle ? angle->value * kDegree : now);
+  return from_zero(distance + (radius ? radius->value : 0), now + (angle ? angle->value * kDegree : 0));
 }
 
 void place_polar(Block& block, const Modes& modes, const ProgramTip& tip) {

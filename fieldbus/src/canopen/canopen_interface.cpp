@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "canopen/canopen_interface_impl.hpp"
+#include "canopen/drives/drive_of_node.hpp"
 #include "rmac/fieldbus/can/socket_can_port.hpp"
 #include "rmac/fieldbus/canopen/bus_load.hpp"
 

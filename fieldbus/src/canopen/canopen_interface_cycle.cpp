@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "canopen/canopen_interface_impl.hpp"
+#include "canopen/drives/drive_of_node.hpp"
 #include "canopen/pdo.hpp"
 
 namespace rmac::fieldbus::canopen {

@@ -26,19 +26,16 @@ void Coordinates::set_unit(Arguments& arguments) {
   } else {
     refuse(arguments.last_place(), fmt::format("UNITS/{} is not taken; write MM or INCHES", word));
   }
-  arguments.end();
 }
 
 void Coordinates::set_multax(Arguments& arguments) {
   // An axis that is not Z stays in force behind OFF: no program says that the tool is upright again.
   multax_ = !arguments.take("OFF");
   if (multax_) static_cast<void>(arguments.take("ON"));
-  arguments.end();
 }
 
 void Coordinates::set_axis(Arguments& arguments) {
   take_axis(triple(arguments.numbers({3}, "i,j,k"), 0), arguments.place());
-  arguments.end();
 }
 
 void Coordinates::take_axis(const Point& program, std::size_t place) {

@@ -122,7 +122,14 @@ TEST(Eds, KnowsThePdosThatAreNotWrittenOut) {
     EXPECT_EQ(drive.find({static_cast<std::uint16_t>(0x1400 + pdo), 3}), nullptr) << "its bit is off";
     EXPECT_EQ(drive.find({static_cast<std::uint16_t>(0x1400 + pdo), 5})->type, DataType::Unsigned16);
     EXPECT_EQ(drive.find({static_cast<std::uint16_t>(0x1400 + pdo), 0})->initial->bytes.at(0), 5);
-    EXPECT_EQ(drive.find({static_cast<std::uint16_t>(0x1600 + pdo), 64})->type, DataType::Unsigned32);
+    for (std::uint8_t sub = 1; sub <= 64; ++sub) {
+      const ObjectEntry* mapped = drive.find({static_cast<std::uint16_t>(0x1600 + pdo), sub});
+      ASSERT_NE(mapped, nullptr) << int{sub};
+      EXPECT_EQ(mapped->type, DataType::Unsigned32);
+      EXPECT_TRUE(writable(mapped->access));
+    }
+    EXPECT_EQ(drive.find({static_cast<std::uint16_t>(0x1600 + pdo), 0})->type, DataType::Unsigned8);
+    EXPECT_EQ(drive.find({static_cast<std::uint16_t>(0x1600 + pdo), 65}), nullptr);
   }
   EXPECT_FALSE(writable(drive.find({0x1401, 0})->access)) << "as it is written out";
   EXPECT_FALSE(drive.has(0x1403));
@@ -132,6 +139,17 @@ TEST(Eds, KnowsThePdosThatAreNotWrittenOut) {
             "drive.eds:3: \"513\" is no whole number from 0 to 512");
   text.erase(text.find("CompactPDO=0x13\n"), 16);
   EXPECT_FALSE(parsed(text).has(0x1400));
+}
+
+TEST(Eds, SaysWhichOfTheAnnouncedObjectsIsNone) {
+  const auto list = [](const std::string& lines) { return refusal("[DeviceInfo]\n[OptionalObjects]\n" + lines); };
+  EXPECT_EQ(list("SupportedObjects=2\n1=0x2000\n[2000]\nDataType=3\nAccessType=ro\n"),
+            "drive.eds:2: [OptionalObjects] announces 2 objects, and its number 2 is missing");
+  for (const std::string number : {"0x10000", "-1", "x", "2000h", "1.5"}) {
+    EXPECT_EQ(list("SupportedObjects=1\n1=" + number + "\n"),
+              "drive.eds:4: [OptionalObjects] announces 1 objects, and its number 1 is no index from 0 to 0xFFFF");
+  }
+  EXPECT_EQ(list("SupportedObjects=0x10000\n"), "drive.eds:3: \"0x10000\" is no whole number from 0 to 65535");
 }
 
 TEST(Eds, NamesTheLineThatIsWrong) {

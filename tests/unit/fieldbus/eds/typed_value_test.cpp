@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <random>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include "rmac/fieldbus/eds/type_names.hpp"
 
@@ -119,6 +122,61 @@ TEST(TypeNames, AreReadInEitherSpellingAndAnyCase) {
   EXPECT_EQ(read_type_name("integer8"), DataType::Integer8);
   EXPECT_EQ(read_type_name("vs"), DataType::VisibleString);
   for (const char* text : {"", "uint16", "u17", "u", "16"}) EXPECT_FALSE(read_type_name(text).has_value()) << text;
+}
+
+/// CiA 301's names, and those of CiA 309-3.
+TEST(TypeNames, AreThoseOfTheStandards) {
+  const std::vector<std::tuple<DataType, std::string, std::string>> names{
+      {DataType::Boolean, "BOOLEAN", "b"},
+      {DataType::Integer8, "INTEGER8", "i8"},
+      {DataType::Integer16, "INTEGER16", "i16"},
+      {DataType::Integer24, "INTEGER24", "i24"},
+      {DataType::Integer32, "INTEGER32", "i32"},
+      {DataType::Integer40, "INTEGER40", "i40"},
+      {DataType::Integer48, "INTEGER48", "i48"},
+      {DataType::Integer56, "INTEGER56", "i56"},
+      {DataType::Integer64, "INTEGER64", "i64"},
+      {DataType::Unsigned8, "UNSIGNED8", "u8"},
+      {DataType::Unsigned16, "UNSIGNED16", "u16"},
+      {DataType::Unsigned24, "UNSIGNED24", "u24"},
+      {DataType::Unsigned32, "UNSIGNED32", "u32"},
+      {DataType::Unsigned40, "UNSIGNED40", "u40"},
+      {DataType::Unsigned48, "UNSIGNED48", "u48"},
+      {DataType::Unsigned56, "UNSIGNED56", "u56"},
+      {DataType::Unsigned64, "UNSIGNED64", "u64"},
+      {DataType::Real32, "REAL32", "r32"},
+      {DataType::Real64, "REAL64", "r64"},
+      {DataType::VisibleString, "VISIBLE_STRING", "vs"},
+      {DataType::OctetString, "OCTET_STRING", "os"},
+      {DataType::UnicodeString, "UNICODE_STRING", "us"},
+      {DataType::TimeOfDay, "TIME_OF_DAY", "t"},
+      {DataType::TimeDifference, "TIME_DIFFERENCE", "td"},
+      {DataType::Domain, "DOMAIN", "d"}};
+  std::string all;
+  for (const auto& [type, name, short_name] : names) {
+    EXPECT_EQ(type_name(type), name);
+    EXPECT_EQ(read_type_name(name), type);
+    EXPECT_EQ(read_type_name(short_name), type);
+    all += (all.empty() ? "" : ", ") + short_name;
+  }
+  EXPECT_EQ(short_type_names(), all);
+  EXPECT_EQ(type_name(static_cast<DataType>(0x0123)), "type 0123h");
+}
+
+/// Of each whole type, the last that fits on either side and the first that does not.
+TEST(TypedValue, HoldsAsFarAsItsBitsGo) {
+  for (const DataType type : kWhole) {
+    const bool is_signed = type_name(type).starts_with("INT");
+    const unsigned bits = 8 * static_cast<unsigned>(bytes_of(type));
+    const auto most = (is_signed ? (std::uint64_t{1} << (bits - 1)) : bits == 64 ? 0 : std::uint64_t{1} << bits) - 1;
+    const std::string least = is_signed ? "-" + std::to_string(most + 1) : "0";
+    EXPECT_EQ(round_trip(std::to_string(most), type), std::to_string(most));
+    EXPECT_EQ(round_trip(least, type), least);
+    const std::string range = "whole numbers from " + least + " to " + std::to_string(most) + " are one";
+    const std::string beyond = most + 1 != 0 ? std::to_string(most + 1) : "18446744073709551616";
+    EXPECT_THAT(refusal(beyond, type), HasSubstr(range));
+    EXPECT_THAT(refusal(is_signed ? "-" + std::to_string(most + 2) : "-1", type), HasSubstr(range));
+  }
 }
 
 }  // namespace

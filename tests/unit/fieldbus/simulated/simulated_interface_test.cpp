@@ -41,6 +41,27 @@ TEST_F(SimulatedBus, ConformsToThePort) {
   conformance::ControlInterfaceConformance(bus_, kX).check();
 }
 
+/// Whatever speed is asked of its own loop, a drive turns its motor no faster than it may, either way.
+TEST_F(SimulatedBus, TurnsNoMotorFasterThanItMayByItsOwnLoop) {
+  const auto axes = default_simulated_axes();
+  enable(kX);
+  for (const int sign : {1, -1}) {
+    std::int32_t before = 0;
+    for (int i = 0; i < 600; ++i) {
+      DriveCommand& command = commands_[kX];
+      command.controlword =
+          next_controlword(feedback_[kX].statusword, DriveWish::Operational, false, command.controlword);
+      command.mode = DriveMode::CyclicSyncVelocity;
+      command.target_velocity_rpm = sign * 20'000;
+      before = feedback_[kX].position_counts;
+      ASSERT_TRUE(bus_.exchange(commands_, feedback_));
+    }
+    const AxisPlantParameters parameters;
+    const double rpm = (feedback_[kX].position_counts - before) / parameters.encoder.counts_per_revolution * 60 / 0.001;
+    EXPECT_NEAR(rpm, sign * parameters.max_speed_rpm, 0.01 * parameters.max_speed_rpm);
+  }
+}
+
 TEST_F(SimulatedBus, RefusesToStartWithoutAxes) {
   SimulatedInterface empty({}, 0.001);
   const auto started = empty.start();

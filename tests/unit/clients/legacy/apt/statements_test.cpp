@@ -49,6 +49,20 @@ TEST(AptStatement, GoesOnBehindADollarAndOverComments) {
   EXPECT_THAT(refusal_of("GOTO/1,2,$\n"), StartsWith("1:11: the statement goes on ($), but the program ends"));
 }
 
+TEST(AptStatement, GoesOnOnlyBehindADollarOfItsOwn) {
+  EXPECT_EQ(read("RAPID $$ said $\nSTOP"), "1:RAPID;2:STOP;");
+  EXPECT_EQ(read("GOTO/1,$x\n2,3"), "1:GOTO 1 2 3;");
+  EXPECT_EQ(read("GOTO/1,$\n2,$\n3\nSTOP"), "1:GOTO 1 2 3;4:STOP;");
+  EXPECT_EQ(read("RAPID $$\nSTOP"), "1:RAPID;2:STOP;");
+}
+
+TEST(AptStatement, HasHyphensBetweenLettersAlone) {
+  EXPECT_EQ(read("END-OF-PATH"), "1:END-OF-PATH;");
+  EXPECT_EQ(read("X/A-B,-5,C"), "1:X A-B -5 C;");
+  EXPECT_THAT(refusal_of("UNITS/MM\nRAPID-"), HasSubstr("- is not understood here"));
+  EXPECT_THAT(refusal_of("UNITS/MM\nRAPID-5"), HasSubstr("- is not understood here"));
+}
+
 TEST(AptStatement, MayBeLongerThanCardsWere) {
   EXPECT_EQ(read("GOTO/" + std::string(90, ' ') + "1,2,3"), "1:GOTO 1 2 3;");
 }

@@ -40,6 +40,7 @@ void LssPeer::receive(const CanFrame& frame, Time now) {
   if (!goes_on) return;
   // It resets its communication by itself, and boots.
   active_ = pending_;
+  if (!habits_.boots) return;
   answer_ = CanFrame{.id = static_cast<std::uint16_t>(kHeartbeat + active_), .size = 1};
   answers_at_ = now + habits_.answers_after;
 }

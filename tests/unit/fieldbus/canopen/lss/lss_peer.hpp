@@ -27,6 +27,7 @@ class LssPeer {
     bool always_answers_begin = false;               ///< to the beginning of a fast scan, whatever its state and id
     bool ignores_switches = false;                   ///< it stays where it is
     bool knows_inquiry = true;
+    bool boots = true;  ///< with the id that it was given
   };
   LssPeer(const Identity& identity, const Habits& habits, std::uint8_t node = kUnconfigured)
       : identity_(identity), habits_(habits), active_(node), pending_(node) {}

@@ -71,6 +71,15 @@ TEST(LssOfSmallStacks, GivesTheOnlyOneItsId) {
   }
 }
 
+TEST(LssOfSmallStacks, SaysThatTheOneWithItsNewIdDoesNotComeUp) {
+  LssWire wire;
+  wire.add({0x1A3, 0x402, 1, 7}, {.boots = false});
+  const auto given = lss_assign(wire, 9, {});
+  ASSERT_FALSE(given);
+  EXPECT_EQ(given.error().message.substr(0, given.error().message.find(" within")),
+            "the node took the id 9 and did not come up with it");
+}
+
 TEST(LssOfSmallStacks, GivesOneOfSeveralAnIdByItsIdentityAndTheLastOneWithout) {
   LssWire wire;
   LssPeer& first = wire.add({0x1A3, 0x402, 1, 0});

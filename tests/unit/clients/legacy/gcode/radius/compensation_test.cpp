@@ -251,5 +251,38 @@ TEST(Compensation, TakesTangentContoursThatAreRounded) {
   }
 }
 
+/// At an outside corner of any angle the tool goes about the corner, and at an inside one to where both ways cross; on
+/// either side, and the whole way it is as far from the contour as its radius.
+TEST(Compensation, TurnsCornersOfEveryAngle) {
+  for (const double left : {3.0, -3.0}) {
+    for (int degrees = -179; degrees <= 179; ++degrees) {
+      SCOPED_TRACE(degrees);
+      const double turn = degrees * std::numbers::pi / 180;
+      const Point end{50 + 60 * std::cos(turn), 60 * std::sin(turn), 0};
+      const auto done = compensated(left, {line_to(50, 0), line_to(end[0], end[1])});
+      const bool outside = degrees * left < 0;
+      const double reach = 3 / std::tan((std::numbers::pi - std::abs(turn)) / 2);  // of an inside corner
+      if (!outside && reach > 45) continue;                                        // the tool does not get in
+      ASSERT_EQ(done.refusal, "");
+      const Flat normal{-std::sin(turn) * left, std::cos(turn) * left};
+      expect_at(done.moves.back(), end[0] + normal.x, end[1] + normal.y);
+      if (std::abs(degrees) < 1) {
+        EXPECT_THAT(done.moves, SizeIs(2));
+        expect_at(done.moves[0], 50, left);
+      } else if (outside) {
+        ASSERT_THAT(done.moves, SizeIs(3));
+        expect_at(done.moves[0], 50, left);
+        ASSERT_TRUE(done.moves[1].arc);
+        expect_at(done.moves[1], 50 + normal.x, normal.y);
+        EXPECT_EQ(done.moves[1].arc->centre, (Point{50, 0, 0}));
+        EXPECT_EQ(done.moves[1].arc->counter_clockwise, left < 0);
+      } else {
+        ASSERT_THAT(done.moves, SizeIs(2));
+        expect_at(done.moves[0], 50 - reach, left);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rmac::gcode

@@ -146,5 +146,79 @@ TEST(TurnedWay, ElsewhereIsASplineWithinItsTolerance) {
   }
 }
 
+/// Each piece turns by less than half a turn: three pieces of a whole one, whichever shape it has.
+TEST(TurnedWay, IsCutIntoPiecesOfAThirdOfATurn) {
+  const Table table{axis_of('C', 1, {0, 0, 0})};
+  for (const double radius : {0.0, 7.0}) {
+    for (const auto& [degrees, count] : std::vector<std::pair<double, std::size_t>>{
+             {1, 1}, {-119, 1}, {120, 1}, {121, 2}, {-240, 2}, {241, 3}, {360, 3}, {1200, 10}}) {
+      const TurnedWay way = turned_way(table, {{radius, 0, 1}, {radius, 0, 5}, {0, 0, 0}, {0, 0, degrees}});
+      EXPECT_EQ(way.pieces.size(), count) << degrees << " at " << radius;
+      EXPECT_EQ(way.turn_degrees, std::abs(degrees));
+    }
+  }
+}
+
+/// Both ways round, of a begin on either side: the last piece ends where the table's turn ends.
+TEST(TurnedWay, EndsWhereTheTableTurnsItTo) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> place(-90, 90), angle(-700, 700);
+  for (int seed = 0; seed < 200; ++seed) {
+    const Table table{axis_of(static_cast<char>('A' + seed % 3), seed % 2 == 0 ? 1 : -1,
+                              {place(random), place(random), place(random)})};
+    const Point from{place(random), place(random), place(random)};
+    Point to = from;
+    to.at(table.front().plane.normal) += seed % 5 == 0 ? 0 : place(random);
+    TableMove move{from, to, {}, {}};
+    move.begin.at(table.front().angle) = angle(random);
+    move.end.at(table.front().angle) = angle(random);
+    const TurnedWay way = turned_way(table, move);
+    const Pose wanted = expected(table, move, 1);
+    if (const auto* arc = std::get_if<TurnedArc>(&way.pieces.back())) {
+      expect_near({arc->arc.end, arc->axis}, wanted, 1e-10, 1e-12);
+      const double degrees = move.end.at(table.front().angle) - move.begin.at(table.front().angle);
+      EXPECT_EQ(arc->arc.counter_clockwise, degrees * table.front().sign > 0);
+    } else {
+      const auto& spline = std::get<PoseSpline>(way.pieces.back());
+      expect_near(value_of(spline, spline.pieces), wanted, 1e-10, 1e-12);
+    }
+  }
+}
+
+TEST(TurnedWay, OfAnArcOfUpToTwoMicrometresIsALineThatTurns) {
+  const Table table{axis_of('C', 1, {0, 0, 0})};
+  const auto pieces_at = [&](double radius, double degrees) {
+    return turned_way(table, {{radius, 0, 0}, {radius, 0, 0}, {0, 0, 0}, {0, 0, degrees}}).pieces;
+  };
+  EXPECT_TRUE(std::holds_alternative<TurnedLine>(pieces_at(0.0019, 90).front()));
+  EXPECT_TRUE(std::holds_alternative<TurnedArc>(pieces_at(0.0021, 90).front()));
+  const double degrees_of_2um = 0.002 / 10 * 180 / std::numbers::pi;
+  const auto line = pieces_at(10, 0.99 * degrees_of_2um);
+  ASSERT_EQ(line.size(), 1U);
+  ASSERT_TRUE(std::holds_alternative<TurnedLine>(line.front()));
+  const TableMove move{{10, 0, 0}, {10, 0, 0}, {0, 0, 0}, {0, 0, 0.99 * degrees_of_2um}};
+  expect_near({std::get<TurnedLine>(line.front()).end, std::get<TurnedLine>(line.front()).axis},
+              expected(table, move, 1), 1e-12, 1e-12);
+  EXPECT_NEAR(turned_way(table, move).length_mm, 0.00198, 1e-9);
+  EXPECT_TRUE(std::holds_alternative<TurnedArc>(pieces_at(10, 1.01 * degrees_of_2um).front()));
+}
+
+/// A tip that is beside the axis by what digits round goes to its end at the end, where that is more than rest.
+TEST(TurnedWay, OfATipBesideTheAxisByADigitEndsWhereItIsToEnd) {
+  const Table table{axis_of('C', 1, {0, 0, 0})};
+  for (const double beside : {0.0, 0.0002, 0.0004, 0.001, 0.0015}) {
+    for (const double degrees : {90.0, -300.0}) {
+      const TableMove move{{beside, 0, 3}, {beside, 0, 8}, {0, 0, 0}, {0, 0, degrees}};
+      const TurnedWay way = turned_way(table, move);
+      EXPECT_EQ(way.length_mm, 5);
+      const auto& end = std::get<TurnedLine>(way.pieces.back());
+      expect_near({end.end, end.axis}, expected(table, move, 1), 1e-12, 1e-12);
+      const double off = legacy::length(difference(expected(table, move, 1).tip, {beside, 0, 8}));
+      const std::size_t turns = std::abs(degrees) > 240 ? 3 : 1;
+      EXPECT_EQ(way.pieces.size(), turns + (off > 5e-4 ? 1 : 0)) << beside << " " << degrees;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rmac::gcode
