@@ -10,6 +10,7 @@ int main(int count, char** words) {
   plant_rows(figures);
   circle_rows(figures);
   force_rows(figures);
+  disturbance_rows(figures);
   fault_rows(figures);
   figures.print_table();
   return figures.all_ok() ? 0 : 1;

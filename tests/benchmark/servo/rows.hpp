@@ -12,5 +12,6 @@ void plant_rows(Figures& figures);
 void circle_rows(Figures& figures);
 void fault_rows(Figures& figures);
 void force_rows(Figures& figures);
+void disturbance_rows(Figures& figures);
 
 }  // namespace rmac::bench
