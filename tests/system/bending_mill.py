@@ -17,19 +17,24 @@ STIFF = {
     "sugino0": {"X": [10610, 955100, 75.8, 0.03948, 0.2369, 94.25, 0], "Y": [12730, 1146000, 90.96, 0.03948, 0.2842, 94.25, 0],
                 "Z": [9197, 827700, 65.69, 0.03948, 0.2053, 75.4, 119.4], "A": [1900, 171000, 13.57, 0.01414, 0.04241, 9, 0],
                 "C": [1583, 142500, 11.31, 0.01414, 0.03534, 9, 0]},
+    # For drives that answer a cycle late: Kp = 15 m, Ki = 60 Kp, Kd = 0.22 m.
+    "can0": {"X": [44400, 2664000, 651.4, 0.03948, 2.961, 377, 0], "Y": [38490, 2309000, 564.5, 0.03948, 2.566, 377, 0],
+             "Z": [32570, 1954000, 477.6, 0.03948, 2.171, 314.2, 628.3], "C": [848, 50900, 12.44, 0.01414, 0.05655, 13.5, 0],
+             "A": [848, 50900, 12.44, 0.01414, 0.05655, 13.5, 0]},
 }
+STIFF["tarus0"] = STIFF["can0"]
 
 
 def rigid(device, **parameters):
     """Its axes, as these parameters of the simulated bus have them beside what is no bending, with loops for such and nothing else."""
     bus = device["DigitalControlInterface"]["Parameters"]
-    for name in BENDING:
-        bus.pop(name, None)
+    for name in [name for name in bus if name.rpartition(".model.")[2] in BENDING]:
+        del bus[name]
     bus.update(parameters)
     for actuator in device["Actuators"]:
         actuator.pop("Cogging", None)
     for data in device["Joints"] + device["HeldJoints"]:
-        data["Gains"] = gains = STIFF[device["Actuators"][0]["Bus"]][data["Name"]]
+        data["Gains"] = gains = list(STIFF[device["Actuators"][0]["Bus"]][data["Name"]])
         of_pid = {"rest_band": 0.002, "load": 117.7 if data["Name"] == "Z" else 0}
         data["ServoControlLaw"]["Parameters"] = of_pid if len(gains) == 3 else {"lead_s": 0.0017}
         for filters in ("Resonances", "LowPass"):

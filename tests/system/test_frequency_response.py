@@ -92,5 +92,29 @@ class JointsThatBend(unittest.TestCase):
                 self.assertEqual(loop_design.design(found, 40).filters.notches, [])
 
 
+class LinesOfOneMode(unittest.TestCase):
+    """Where a model of one mode is all that the lines show."""
+
+    def test_what_lines_are_not_sure_of_is_no_further_mode(self):
+        """As cogging leaves it: something narrow, within what the lines may be off by."""
+        frequency = np.arange(21, 495, 2.0)
+        for seed in range(1, 9):
+            chance = np.random.default_rng(seed)
+            hz = chance.uniform(80, 140)
+            place = 2 * np.pi * PERIOD * hz
+            mode = frequency_response.Mode(place, 0.02)
+            mode.over = tuple(0.3 * (1 - np.cos(place)) * PERIOD**2 / 3 * share for share in (0.5, 1, 0.5))
+            true = frequency_response.Model(PERIOD, 3.0, 0.0027, 0.0, [mode])
+            noise = chance.standard_normal(len(frequency)) + 1j * chance.standard_normal(len(frequency))
+            narrow = frequency_response.Mode(0.8 * place, 0.006, (0.0, 1.0, 0.0)).response(2 * np.pi * frequency * PERIOD)
+            answer = true.response(frequency)
+            narrow *= 0.7 / np.abs(narrow / answer).max()
+            value = answer * (1 + 0.01 * noise) + narrow
+            with self.subTest(seed=seed):
+                found = frequency_response.fit(frequency_response.Response(frequency, value, np.full(len(frequency), 0.4)), PERIOD)
+                (seen,) = found.resonances()
+                self.assertAlmostEqual(seen[0] / hz, 1, delta=0.01)
+
+
 if __name__ == "__main__":
     unittest.main()

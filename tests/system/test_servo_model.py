@@ -75,6 +75,31 @@ class Identification(unittest.TestCase):
                 gains = loop_design.design(joint, margin).gains
                 self.assertTrue(gains[0] > 0 and min(gains) >= 0, gains)
 
+    def test_a_joint_that_is_a_little_other_gets_a_loop_that_is_a_little_other(self):
+        """As noise makes it: a hundredth more delay costs a hundredth of bandwidth or two, wherever on the way that is."""
+        bandwidths = []
+        for delay in np.geomspace(0.0015, 0.0032, 76):
+            joint = Model(PERIOD, 0.02, delay)
+            bandwidths.append(loop_design.margins_of(loop_design.design(joint, MARGIN), joint).bandwidth_hz)
+        steps = np.array(bandwidths[:-1]) / bandwidths[1:]
+        self.assertLess(steps.max(), 1.025)
+        self.assertGreater(steps.min(), 0.99)
+
+    def test_a_joint_that_rings_is_no_later_by_a_period_of_that(self):
+        """Its acceleration and its effort swing together, and would so a period later: the first delay that explains them is right."""
+        setpoints = np.array(list(excitation(travel=40, max_speed=90, acceleration=75, jerk=750)))
+        time = np.arange(len(setpoints)) * PERIOD
+        mass, friction, delay = 0.05, 13.5, 0.0023
+        for seed in range(1, 13):
+            noise, hz = np.random.default_rng(seed), random.Random(seed).uniform(125, 165)
+            ring = 600 * np.sin(2 * np.pi * hz * time + np.cumsum(0.05 * noise.standard_normal(len(time))))
+            position = setpoints[:, 0] - ring / (2 * np.pi * hz) ** 2
+            needed = mass * (np.gradient(setpoints[:, 1], PERIOD) + 0.6 * ring) + friction * np.sign(setpoints[:, 1])
+            effort = np.interp(time + delay, time, needed) + 0.1 * noise.standard_normal(len(time))
+            with self.subTest(seed=seed, hz=hz):
+                found = servo_model.identify(time, position, effort, PERIOD)
+                self.assertAlmostEqual(found.delay_s, delay, delta=0.001)
+
     def test_refuses_what_cannot_be(self):
         joint = Model(PERIOD, 0.02, 0.0017)
         # A whole turn of delay later the same angle comes again; that is no lead that a law could give.

@@ -28,16 +28,16 @@ class TuneCreep(TuningTest):
 
     def test_the_tree_has_what_tune_finds(self):
         """Gains, filters, friction and cogging of its machines are those that anybody finds on their axes."""
-        for machine, travel in (("DMACXYZ", "20"), ("SuginoXYZ", "40")):
+        for machine, number, travel in (("DMACXYZ", 0, "20"), ("SuginoXYZ", 0, "40"), ("TarusXYZCATwin", 4, "40")):
             with self.subTest(machine), Appliance() as appliance, tempfile.TemporaryDirectory() as folder:
                 self.rmac(appliance, "load", machine)
-                words = ("tune", "0", "--travel", travel, "--creep", "-o", str(pathlib.Path(folder, "tune.png")))
+                words = ("tune", str(number), "--travel", travel, "--creep", "-o", str(pathlib.Path(folder, "tune.png")))
                 found = json.loads(self.rmac(appliance, "--json", *words))
                 device = json.loads(next(appliance.tree.glob(f"*/*/{machine}/device.json")).read_text())
-                self.has(device, found)
+                self.has(device, number, found)
 
-    def has(self, device, found):
-        joint, creep = device["Joints"][0], found["creep"]
+    def has(self, device, number, found):
+        joint, creep = device["Joints"][number], found["creep"]
         for gain, own in zip(found["pid_gains"], joint["Gains"][:3], strict=True):
             self.assertAlmostEqual(gain / own, 1, delta=0.06)
         (notch,), (own,) = found["proposed"]["filters"]["Resonances"], joint["Resonances"]
@@ -48,7 +48,7 @@ class TuneCreep(TuningTest):
         self.assertAlmostEqual(found["plant"]["mass"] / mass, 1, delta=0.02)
         self.assertAlmostEqual(creep["friction"] / friction, 1, delta=0.05)
         self.assertAlmostEqual(creep["parameters"]["presliding"][0] / parameters["presliding"], 1, delta=0.15)
-        (cogs,), (known,) = creep["motor"]["cogging"]["Harmonics"], device["Actuators"][0]["Cogging"]["Harmonics"]
+        (cogs,), (known,) = creep["motor"]["cogging"]["Harmonics"], device["Actuators"][number]["Cogging"]["Harmonics"]
         self.assertEqual(cogs["Order"], known["Order"])
         self.assertAlmostEqual(cogs["Sine"] / known["Sine"], 1, delta=0.1)
 

@@ -16,8 +16,10 @@ from servo_model import period_of
 WORST_LINE = 0.5
 # Of the model: a line is never believed to better than this, because friction and cogging are not linear.
 LINE_SPREAD = 0.05
-# A further mode has to take so much of what the model leaves.
+# A further mode has to take so much of what the model leaves, and more than the best of its five numbers would take of
+# noise alone, in squares of the lines' spread: 26 once in 10 000 places.
 WORTH_A_MODE = 0.6
+NOISE_OF_A_MODE = 30
 MOST_MODES = 3
 FEWEST_LINES = 40
 # What is damped more is friction, not a mode.
@@ -185,7 +187,7 @@ def fit(response, period):
     for count in range(MOST_MODES + 1):
         found = lines.refine(lines.best_start(best[2:] if best is not None else [], with_mode=count > 0))
         cost = np.sum(lines.deviation(found) ** 2)
-        if cost > WORTH_A_MODE * left or lines.at_a_bound(found):
+        if cost > min(WORTH_A_MODE * left, left - NOISE_OF_A_MODE) or lines.at_a_bound(found):
             break
         best, left = found, cost
     shares = lines.shares(best)

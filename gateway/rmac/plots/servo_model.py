@@ -18,6 +18,9 @@ WINDOW_S = 0.015
 # Below this share of the fastest speed of the record friction is not what it is at speed.
 SLOW_SHARE = 0.02
 LONGEST_DELAY_S = 0.01
+# A joint that rings explains itself as well a period of its resonance later: the earliest delay that leaves at most so
+# many times what the best one does.
+AS_GOOD = 1.5
 
 
 @dataclass
@@ -54,11 +57,12 @@ def period_of(columns):
     return round(float(np.median(np.diff(columns["t_s"]))), 9)
 
 
-def identify(time, position, effort, period=None):
-    """The plant behind measured positions and efforts of every cycle. Efforts and motion pass the same filter, so that
-    it changes neither their ratio nor their delay; of all delays that one is right which leaves the least."""
+def identify(time, position, effort, period=None, delay=None, window_s=WINDOW_S):
+    """The plant behind measured positions and efforts of every cycle. Efforts and motion pass the same filter, of
+    `window_s`, so that it changes neither their ratio nor their delay; of all delays that one is right which leaves the
+    least, unless it is known."""
     period = period or float(np.median(np.diff(time)))
-    window = max(5, int(round(WINDOW_S / period)) | 1)
+    window = max(5, int(round(window_s / period)) | 1)
     if len(position) < 20 * window:
         raise Unidentifiable(f"{len(position)} cycles are too few")
     smooth = dict(window_length=window, polyorder=3)
@@ -85,14 +89,22 @@ def identify(time, position, effort, period=None):
         found, *_ = np.linalg.lstsq(matrix, right, rcond=None)
         return found, float(np.sum((matrix @ found - right) ** 2)), float(np.sum((right - right.mean()) ** 2))
 
-    grid = np.arange(0, LONGEST_DELAY_S, period / 2)
-    best = min(grid, key=lambda delay: solve(delay)[1])
-    delay = minimize_scalar(lambda d: solve(d)[1], bounds=(max(0, best - period), best + period), method="bounded").x
+    if delay is None:
+        grid = np.arange(0, LONGEST_DELAY_S, period)  # between two cycles noise is less, which makes valleys of its own
+        best = grid[_earliest_valley([solve(at)[1] for at in grid])]
+        delay = minimize_scalar(lambda d: solve(d)[1], bounds=(max(0, best - period), best + period), method="bounded").x
     (mass, viscous, friction, load), left, total = solve(delay)
     if not mass > 0:
         raise Unidentifiable("the accelerations do not tell its mass; give it more travel")
     return Plant(float(mass), max(float(viscous), 0.0), max(float(friction), 0.0), float(load), float(delay),
                  1 - left / total)
+
+
+def _earliest_valley(left):
+    """Where `left` is about as small as anywhere, and larger on either side."""
+    walls = [np.inf, *left, np.inf]
+    valleys = [index for index in range(len(left)) if walls[index] >= left[index] <= walls[index + 2]]
+    return next(index for index in valleys if left[index] <= AS_GOOD * min(left))
 
 
 def as_json(plant):

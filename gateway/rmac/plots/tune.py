@@ -25,6 +25,8 @@ WORST_MISFIT = 0.4
 LEAST_TO_SWEEP = 5.0
 SETTLES = 45.0
 SLOWER = 0.8
+# Of its slowest resonance: smoothed over so long, a joint that rings shows how its whole mass goes.
+PERIODS_SMOOTHED = 3
 
 
 def feedback_gains(joint):
@@ -155,6 +157,15 @@ def measured_joint(given, plant):
     return joint, response
 
 
+def as_it_answers(columns, joint, bent):
+    """What swings show, where the joint's response is known: with the delay of that, which tells it apart from friction and
+    cogging, and behind smoothing that leaves nothing of resonances."""
+    slowest = min((hz for hz, _ in bent.resonances()), default=np.inf)
+    window = max(model.WINDOW_S, PERIODS_SMOOTHED / slowest)
+    return model.identify(columns["t_s"], columns[f"a{joint + 1}"], columns[f"effort{joint + 1}"],
+                          delay=bent.delay_s + bent.lag_s, window_s=window)
+
+
 def swept(given):
     """Columns of each record of sines."""
     return [model.read_record(file, begin)[1] for file, begin in zip(given.sweep, given.sweep_begin)]
@@ -208,6 +219,8 @@ def main():
     try:
         plant = model.identify(columns["t_s"], columns[f"a{column}"], columns[f"effort{column}"])
         bent, response = measured_joint(given, plant)
+        if response is not None:
+            plant = as_it_answers(columns, given.joint, bent)
         proposed = design.design(bent, given.margin, given.bandwidth)
         lead = plant.delay_s + proposed.filters.delay_s()
         creeping = crept(given, head, plant, bent, lead)

@@ -211,10 +211,18 @@ TEST_F(DeviceTree, TwinHasTheValuesOfItsMachine) {
   for (const char* key : {"Joints", "Kinematics", "ActuatorMap", "MaxFeedrate", "WorkingVolume"}) {
     EXPECT_EQ(twin[key], machine[key]) << key;
   }
+  ASSERT_EQ(twin["Actuators"].size(), machine["Actuators"].size());
+  for (std::size_t i = 0; i < twin["Actuators"].size(); ++i) {
+    for (const char* key : {"CountsPerRevolution", "RatedTorque", "Direction", "HomeCounts", "Cogging"}) {
+      EXPECT_EQ(twin["Actuators"][i][key], machine["Actuators"][i][key]) << key << " of actuator " << i;
+    }
+  }
   // And the axes of the models of its buses: three of each, the spindle last of the machine's and fourth of the twin's.
   const auto& models = machine["DigitalControlInterface"]["Parameters"];
   const auto& plants = twin["DigitalControlInterface"]["Parameters"];
-  for (const char* key : {"rated_torque_nm", "inertia_kg_m2", "friction_nm", "counts_per_revolution"}) {
+  for (const char* key : {"rated_torque_nm", "inertia_kg_m2", "friction_nm", "counts_per_revolution",
+                          "stiffness_nm_rad", "load_inertia_kg_m2", "presliding_turns", "cogging", "torque_ripple",
+                          "encoder_noise_counts", "encoder_interpolation_counts"}) {
     auto axes = models[std::string("can0.model.") + key];
     const auto& head = models[std::string("can1.model.") + key];
     for (const std::size_t i : {2U, 0U, 1U}) axes.push_back(head[i]);
