@@ -16,7 +16,7 @@ using testing::HasSubstr;
 /// A folder of its own, that goes with it.
 class ProgramFiles : public testing::Test {
  protected:
-  ProgramFiles() : folder_(fs::path(testing::TempDir()) / "rmac_program_files") {
+  ProgramFiles() : folder_(fs::path(testing::TempDir()) / ("rmac_program_files." + std::to_string(::getpid()))) {
     fs::remove_all(folder_);
     fs::create_directories(folder_ / "a");
     fs::create_directories(folder_ / "b");

@@ -62,6 +62,20 @@ TEST(ContactEffort, IsAsSlowAsItIsAskedToBe) {
   EXPECT_EQ(after(40), after(kAny)) << "nor is it faster than its cycles let it be";
 }
 
+// Its mechanics do not become faster with its cycles; what is behind a slow cycle is slower.
+TEST(ContactEffort, TakesAsLongWhateverTheCycleAndLongerWhereThatIsLong) {
+  const auto after = [](double period_s, double time_s) {
+    ContactEffort effort(period_s);
+    double pushed = 0;
+    for (double t = 0; t < time_s; t += period_s)
+      pushed = effort.step(100 - pushed, {.bandwidth_rad_s = kAny, .largest_error = 10});
+    return pushed;
+  };
+  EXPECT_NEAR(after(0.00025, 0.03), after(0.001, 0.03), 5);
+  EXPECT_NEAR(after(0.004, 0.12), after(0.001, 0.03), 5);
+  EXPECT_LT(after(0.004, 0.03), 0.5 * after(0.001, 0.03));
+}
+
 TEST(ContactEffort, StandsStillWhereItMayNotGrowAndComesBackAtOnce) {
   ContactEffort effort(kPeriod);
   ContactEffort::Limits limits{.bandwidth_rad_s = kAny, .largest_error = 10};
