@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "rmac/motion/servo/pitch_error.hpp"
+
 namespace rmac::gateway {
 namespace {
 
@@ -22,13 +24,17 @@ TouchProbeModel::TouchProbeModel(std::shared_ptr<fieldbus::SimulatedIoInterface>
       period_s_(parts.period_s),
       shafts_(std::move(shafts)),
       spindle_(std::move(spindle)),
-      powered_(probe_.switch_rpm == 0) {}
+      powered_(probe_.switch_rpm == 0) {
+  for (const ServoJoint& joint : parts.joints) pitch_.push_back(joint.mechanics.pitch);
+}
 
-double TouchProbeModel::distance(std::span<const double> joints) const noexcept {
+double TouchProbeModel::distance(std::span<const double> shown) const noexcept {
+  std::array<double, kMaxJoints> joints{};
+  for (std::size_t j = 0; j < axes_; ++j) joints[j] = shown[j] + pitch_error(pitch_[j], shown[j]);
   Frame stylus;
   stylus.p = probe_.stylus;
   ToolPose tip;
-  kinematics_->forward(joints.first(kinematics_->joint_count()), stylus, tip);
+  kinematics_->forward({joints.data(), kinematics_->joint_count()}, stylus, tip);
   return io_->part().distance(tip.tip) - probe_.radius;
 }
 

@@ -40,11 +40,12 @@ class TouchProbeModel final : public DigitalIoInterface {
  private:
   /// Where the machine is at one instant.
   struct Instant {
-    std::array<double, kMaxJoints> position{}, velocity{};  ///< of joints
+    std::array<double, kMaxJoints> position{}, velocity{};  ///< of joints, without their pitch errors
     double distance = 0;                                    ///< of the tip's surface from the part, mm
   };
   [[nodiscard]] Instant look() const noexcept;
-  [[nodiscard]] double distance(std::span<const double> joints) const noexcept;
+  /// Where loads show the joints so; what they are beside that by declared pitch errors is added.
+  [[nodiscard]] double distance(std::span<const double> shown) const noexcept;
   /// At `share` of the cycle from `from` to `to`.
   [[nodiscard]] std::array<double, kMaxJoints> joints_between(const Instant& from, const Instant& to,
                                                               double share) const noexcept;
@@ -58,6 +59,7 @@ class TouchProbeModel final : public DigitalIoInterface {
   fieldbus::SimulatedProbe probe_;
   std::shared_ptr<const Kinematics> kinematics_;
   std::shared_ptr<const ActuatorMap> map_;
+  std::vector<PitchErrors> pitch_;  ///< of each joint
   std::size_t axes_;
   double period_s_;
   std::vector<Shaft> shafts_;

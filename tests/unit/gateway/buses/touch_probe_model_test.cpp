@@ -62,7 +62,7 @@ class Touching : public testing::Test {
   Touching() { make({}); }
 
   /// A block whose top is at z = 10, below a tip of 2 mm, 50 mm under the tool interface.
-  void make(std::map<std::string, std::vector<double>> more) {
+  void make(std::map<std::string, std::vector<double>> more, const PitchErrors& pitch_of_z = {}) {
     more.insert({{"probe_input", {2}},
                  {"probe_ready", {3}},
                  {"probe_stylus_mm", {0, 0, -50}},
@@ -76,6 +76,7 @@ class Touching : public testing::Test {
     parts.kinematics = std::make_shared<Slides>();
     parts.actuator_map = std::make_shared<Screws>();
     parts.joints.resize(3);
+    parts.joints[2].mechanics.pitch = pitch_of_z;
     const auto shared = std::make_shared<ServoBus>(bus_);
     for (std::uint32_t i = 0; i < 3; ++i) {
       ServoActuator actuator;
@@ -142,6 +143,16 @@ TEST_F(Touching, IsWhereTheTipReallyMeetsThePart) {
   EXPECT_FALSE(touches(102.1, 0, 5));
   EXPECT_TRUE(touches(0, -101.9, 5)) << "Y turns the other way";
   EXPECT_FALSE(touches(0, -102.1, 5));
+}
+
+// As the truth in records has them: between the load, which is put, and the joint.
+TEST_F(Touching, IsWhereDeclaredPitchErrorsPutTheTip) {
+  constexpr double kUp_mm = 0.02;
+  make({}, {.first = 0, .step = 100, .errors = {0, kUp_mm, kUp_mm}});
+  const double share = (12 + 50) / 100.0;  // of the way to the table's second point, at which the tip is on the part
+  EXPECT_FALSE(touches(0, 0, 12));
+  EXPECT_FALSE(touches(0, 0, 12 - 0.9 * share * kUp_mm));
+  EXPECT_TRUE(touches(0, 0, 12 - 1.1 * share * kUp_mm));
 }
 
 TEST_F(Touching, SaysWhenWithinTheCycleItBegan) {
