@@ -167,10 +167,9 @@ TEST(ForceControlParts, AreRefusedWhereTheApproachWouldPressTooHard) {
   fast.mass = 0.0268;
   auto refused = check_force_control(fast, "joint Z");
   ASSERT_FALSE(refused);
-  EXPECT_EQ(
-      refused.error().message,
-      "servo loop: joint Z approaches at 50, and would press its part with 1830 at a stiffness of 50000, beyond "
-      "its largest force of 500; let it approach at 13.7 or slower, or say what stiffness its parts have");
+  EXPECT_EQ(refused.error().message,
+            "servo loop: joint Z approaches at 50, and would press its part with 1830 at a stiffness of 50000, beyond "
+            "its largest force of 500; let it approach at 13.7 or slower, or say what stiffness its parts have");
   fast.approach_speed = 13.6;
   EXPECT_TRUE(check_force_control(fast, "joint Z"));
   fast.approach_speed = 50;
