@@ -1,6 +1,7 @@
 """What was measured held against its model in the window: figures, colours, corrections, and what is refused."""
 
 import os
+import re
 import tempfile
 import unittest
 from types import SimpleNamespace
@@ -200,7 +201,9 @@ class AtTheMachineTest(CompareTest):
         dialog = self.fits(self.compared(self.measured()))
         self.assertGreater(abs(dialog.comparison.taken.worst), 0.02)
         dialog.frame_button.click()
-        self.told(dialog, f"turned by {TURN_DEG:.2f}")
+        self.told(dialog, "turned by")
+        turned = float(re.search(r"turned by ([\d.]+)°", dialog.message.text()).group(1))
+        self.assertAlmostEqual(turned, TURN_DEG, delta=0.001)
         again = self.fits(self.compared(self.measured()))
         self.assertLess(abs(again.comparison.taken.worst), 2e-3)
         frame = self.connect().cam.GetPartFrame()
