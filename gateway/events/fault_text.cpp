@@ -203,8 +203,8 @@ std::string joint_cause(const ServoFault& fault, const std::string& at) {
           at, fault.value, fault.bound);
     case ServoFault::Kind::SensorLost:
       return fmt::format(
-          "{}: its force sensor gives no valid value; check the sensor, its amplifier and its cable, "
-          "then reset",
+          "{}: its force sensor gives no valid value, or the same one however hard the joint is pushed; check the "
+          "sensor, its amplifier and its cable, then reset",
           at);
     case ServoFault::Kind::ForceLimit:
       return fmt::format(

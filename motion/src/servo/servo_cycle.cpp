@@ -232,6 +232,7 @@ JointSeen ServoLoop::Impl::seen(std::size_t joint) const noexcept {
           .force = joints.force()[joint],
           .contact = force_loop.state(),
           .searched = force_loop.searched(),
+          .force_hangs = force_loop.sensor_hangs(),
           .bounces = force_loop.bounces(),
           .loop = {.effort = measured.value_or(laws.effort()[joint]),
                    .effort_measured = measured.has_value(),

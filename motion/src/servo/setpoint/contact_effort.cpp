@@ -28,9 +28,10 @@ double ContactEffort::step(double error, const Limits& limits) noexcept {
   const double bandwidth = std::min(share(period_s_) * kBandwidth_rad_s, limits.bandwidth_rad_s);
   const double reset_s = std::max(kOuterReset / bandwidth, limits.reset_time_s);
   const double pushes = bandwidth * smooth_ + rate_;
-  if (pushes * limits.bounded > 0) return effort_;
-  rate_ += bandwidth / reset_s * std::clamp(smooth_, -limits.largest_error, limits.largest_error) * period_s_;
-  effort_ += pushes * period_s_;
+  const auto bounded = [&limits](double way) { return way > 0 ? limits.no_more : limits.no_less; };
+  if (!bounded(smooth_))
+    rate_ += bandwidth / reset_s * std::clamp(smooth_, -limits.largest_error, limits.largest_error) * period_s_;
+  if (!bounded(pushes)) effort_ += pushes * period_s_;
   return effort_;
 }
 

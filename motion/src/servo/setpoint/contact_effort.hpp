@@ -13,10 +13,10 @@ class ContactEffort {
   /// Contact begins: nothing is added yet.
   void begin() noexcept { *this = ContactEffort(period_s_); }
   struct Limits {
-    double bandwidth_rad_s = 0;  ///< no more than this
-    double reset_time_s = 0;     ///< of the outer integral, no less than this
-    double largest_error = 0;    ///< that counts for the outer integral
-    int bounded = 0;             ///< sign of the way that the effort may not grow now; 0: both are free
+    double bandwidth_rad_s = 0;             ///< no more than this
+    double reset_time_s = 0;                ///< of the outer integral, no less than this
+    double largest_error = 0;               ///< that counts for the outer integral
+    bool no_more = false, no_less = false;  ///< ways that the effort may not go now
   };
   /// One cycle, by the force's error.
   [[nodiscard]] double step(double error, const Limits& limits) noexcept;

@@ -11,6 +11,8 @@ namespace {
 constexpr double kBounce_s = 0.02, kSettled_s = 0.01;
 /// Who bounces for so long draws back for so long.
 constexpr double kMostBouncing_s = 0.2, kDrawsBack_s = 0.05;
+/// What presses for longer while it draws back is a sensor that hangs.
+constexpr double kMostLettingGo_s = 1;
 constexpr double kGentlest = 1.0 / 64;  ///< part of the approach speed
 
 }  // namespace
@@ -20,6 +22,7 @@ ContactSearch::ContactSearch(const ForceControl& control, double period_s) noexc
 
 void ContactSearch::step(double wanted, double measured, double velocity) noexcept {
   if (wanted == 0) return hold(measured);
+  if (towards_ * wanted < 0) restart();  // what it touched is behind it
   towards_ = std::copysign(1.0, wanted);
   draws_back_s_ = std::max(0.0, draws_back_s_ - period_s_);
   const ContactState before = state_;
@@ -44,16 +47,19 @@ void ContactSearch::step(double wanted, double measured, double velocity) noexce
 }
 
 void ContactSearch::hold(double measured) noexcept {
-  const bool touches = towards_ * measured >= control_.contact_force / 2;
+  const double letting_go = letting_go_s_ + period_s_;
+  const bool touches = towards_ * measured >= control_.contact_force / 2 && letting_go < kMostLettingGo_s;
   const double left = touches ? draws_back_s_ : std::max(0.0, draws_back_s_ - period_s_);
   const double towards = towards_;
   restart();
   draws_back_s_ = left;
+  letting_go_s_ = letting_go;
   towards_ = towards;
 }
 
 void ContactSearch::let_go() noexcept {
   draws_back_s_ = kDrawsBack_s;
+  letting_go_s_ = 0;
 }
 
 ContactState ContactSearch::next(double pushed) const noexcept {

@@ -41,6 +41,7 @@ class ContactSearch {
   double lost_s_ = std::numeric_limits<double>::infinity();  ///< since it was lost
   double unsettled_s_ = 0;                                   ///< since the first contact of those that did not last
   double draws_back_s_ = 0;                                  ///< that are left of it
+  double letting_go_s_ = 0;                                  ///< since `let_go`
   double part_ = 1;                                          ///< of the approach speed
 };
 

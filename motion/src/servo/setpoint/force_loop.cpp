@@ -18,6 +18,8 @@ constexpr double kUndamped = 4, kSlowPart = 0.5;
 constexpr double kAround_rad_s = 20, kStiffest = 50'000, kReset = 8;
 /// Who is pushed until it proves soft is pushed again once it is so much stiffer than that.
 constexpr double kClearly = 1.5;
+/// Part of the largest force by which the effort changes at most while not a digit of the measured force does.
+constexpr double kUnanswered = 0.25;
 /// Part of the wanted force up to which an error is taken for that of a surface which rises, and not of a new force.
 constexpr double kSteady = 0.1;
 
@@ -82,7 +84,7 @@ void ForceLoop::choose() noexcept {
   const bool pushes = stiff() > (pushes_ ? soft_ : kClearly * soft_);
   if (pushes == pushes_) return;
   pushes_ = pushes;
-  integral_ = added_ = 0;
+  integral_ = added_ = added_at_reading_ = 0;
   effort_.begin();
 }
 
@@ -106,14 +108,22 @@ double ForceLoop::gain() const noexcept {
 }
 
 void ForceLoop::push(const Seen& seen) noexcept {
-  const bool too_fast = std::abs(seen.velocity) > control_.max_speed;
   const double asked = control_.gain > 0 && stiffness_.value() ? control_.gain * *stiffness_.value()
                                                                : std::numeric_limits<double>::infinity();
   added_ =
       effort_.step(seen.wanted - seen.measured, {.bandwidth_rad_s = asked,
                                                  .reset_time_s = control_.reset_time_s,
                                                  .largest_error = kSteady * std::abs(seen.wanted),
-                                                 .bounded = too_fast ? (seen.velocity > 0 ? 1 : -1) : seen.bounded});
+                                                 .no_more = seen.bounded > 0 || seen.velocity > control_.max_speed,
+                                                 .no_less = seen.bounded < 0 || seen.velocity < -control_.max_speed});
+  if (seen.measured != reading_) {
+    reading_ = seen.measured;
+    added_at_reading_ = added_;
+  }
+}
+
+bool ForceLoop::sensor_hangs() const noexcept {
+  return pushes_ && std::abs(added_ - added_at_reading_) > kUnanswered * control_.max_force;
 }
 
 double ForceLoop::damped(double velocity) const noexcept {

@@ -46,6 +46,8 @@ class ForceLoop {
   [[nodiscard]] bool bounces() const noexcept {
     return search_.bounces() || (state() == ContactState::Touching && !search_.settled());
   }
+  /// It is pushed ever more, or less, and its measured force stays the same.
+  [[nodiscard]] bool sensor_hangs() const noexcept;
   /// Way without contact, from the start or from where it was lost.
   [[nodiscard]] double searched() const noexcept { return search_.searched(); }
   /// Begins anew, at rest.
@@ -69,7 +71,8 @@ class ForceLoop {
   double integral_ = 0;  ///< velocity
   bool pushes_ = false;
   ContactEffort effort_;
-  double added_ = 0;  ///< effort
+  double added_ = 0;                           ///< effort
+  double reading_ = 0, added_at_reading_ = 0;  ///< the last force that was another than before it
   ContactStiffness stiffness_;
 };
 

@@ -8,7 +8,8 @@
 namespace rmac {
 namespace {
 
-constexpr double kSoft = 0.25;
+/// A part is soft that gives way by so much, mm or deg, when a joint pushes it with all it has.
+constexpr double kSoft = 2;
 constexpr double kAnything = std::numeric_limits<double>::infinity();
 
 std::vector<MotionBounds> stop_bounds(std::span<const ServoJoint> joints) {
@@ -32,11 +33,8 @@ Setpoints::Setpoints(const ServoLoopParts& parts, const Wiring::Delays& delays, 
       brake_(stop_bounds(parts.joints)) {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     followers_.emplace_back(joints_[j], period_s_);
-    // What the joint's bounds say of its own loop: it is as stiff as one that is pushed with all it has at its largest
-    // error. A part is soft that is much softer.
-    const double own =
-        has(follow_themselves, j) ? kAnything : kSoft * joints_[j].max_effort / joints_[j].max_following_error;
-    force_loops_.emplace_back(joints_[j].force, period_s_, own);
+    const double soft = has(follow_themselves, j) ? kAnything : joints_[j].max_effort / kSoft;
+    force_loops_.emplace_back(joints_[j].force, period_s_, soft);
     ways_.push_back({RecentWay(delays[j]), RecentWay(delays[j])});
   }
   if (virtual_mode_) hold_at(parts.virtual_start);

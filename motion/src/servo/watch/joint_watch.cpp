@@ -30,7 +30,13 @@ void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
   if (too_fast_.step(seen.velocity, bounds.velocity)) {
     raise(ServoFault::Kind::VelocityBound, seen.velocity, bounds.velocity, faults);
   }
-  if (joint_->method == ControlMethod::Force) watch_contact(seen, faults);
+  const bool by_force = joint_->method == ControlMethod::Force;
+  // Where there is a sensor, it tells of a collision too.
+  const double most = joint_->force.max_force;
+  if ((by_force || (joint_->force_sensor && most > 0)) && !(std::abs(seen.force) <= most)) {
+    raise(ServoFault::Kind::ForceLimit, seen.force, most, faults);
+  }
+  if (by_force) watch_contact(seen, faults);
 }
 
 void JointWatch::watch_sensor(FaultSink& faults) const noexcept {
@@ -42,9 +48,7 @@ void JointWatch::watch_sensor(FaultSink& faults) const noexcept {
 
 void JointWatch::watch_contact(const JointSeen& seen, FaultSink& faults) const noexcept {
   const ForceControl& control = joint_->force;
-  if (!(std::abs(seen.force) <= control.max_force)) {
-    raise(ServoFault::Kind::ForceLimit, seen.force, control.max_force, faults);
-  }
+  if (seen.force_hangs) raise(ServoFault::Kind::SensorLost, seen.force, 0, faults);
   const JointBounds& bounds = joint_->bounds;
   const bool at_end = (seen.position_set > bounds.max_position && seen.velocity_set > 0) ||
                       (seen.position_set < bounds.min_position && seen.velocity_set < 0);

@@ -19,8 +19,9 @@ struct JointSeen {
   double position_set = 0, velocity_set = 0;
   double force = 0;  ///< measured
   ContactState contact = ContactState::None;
-  double searched = 0;   ///< way without contact
-  bool bounces = false;  ///< off the part that it comes upon: it swings, and its loop does not
+  double searched = 0;       ///< way without contact
+  bool force_hangs = false;  ///< it stays the same, however the joint is pushed
+  bool bounces = false;      ///< off the part that it comes upon: it swings, and its loop does not
   OscillationSeen loop{};
 };
 

@@ -81,10 +81,21 @@ TEST(ContactEffort, StandsStillWhereItMayNotGrowAndComesBackAtOnce) {
   ContactEffort::Limits limits{.bandwidth_rad_s = kAny, .largest_error = 10};
   double before = 0;
   for (int k = 0; k < 100; ++k) before = effort.step(100, limits);
-  limits.bounded = 1;
+  limits.no_more = true;
   for (int k = 0; k < 1000; ++k) EXPECT_EQ(effort.step(100, limits), before);
-  for (int k = 0; k < 100; ++k) (void)effort.step(-100, limits);
-  EXPECT_LT(effort.step(-100, limits), before - 200);
+  double last = before;
+  for (int k = 0; k < 100; ++k) last = effort.step(-100, limits);
+  EXPECT_LT(last, before - 200) << "the other way is free";
+}
+
+TEST(ContactEffort, GivesUpWhatItGainedOnASlopeWhileItMayNotGrow) {
+  ContactEffort effort(kPeriod);
+  ContactEffort::Limits limits{.bandwidth_rad_s = kAny, .largest_error = 10};
+  for (int k = 0; k < 2000; ++k) (void)effort.step(2, limits);
+  limits.no_more = true;
+  const double before = effort.step(0, limits);
+  for (int k = 0; k < 10'000; ++k) (void)effort.step(-0.5, limits);
+  EXPECT_LT(effort.step(-0.5, limits), before - 1) << "a small error the other way comes through";
 }
 
 TEST(ContactEffort, BeginsWithNothing) {

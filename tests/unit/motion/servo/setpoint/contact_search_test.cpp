@@ -120,6 +120,31 @@ TEST_F(SearchForContact, DrawsBackWhereItIsToLetGo) {
   EXPECT_EQ(search_.velocity(), 0);
 }
 
+TEST_F(SearchForContact, LeavesItsPartWhereItIsToPullAndNeverGoesIntoIt) {
+  bounce(17, 4, 8);
+  ASSERT_EQ(search_.velocity(), 8) << "it draws back";
+  search_.step(100, -50, 0);
+  EXPECT_EQ(search_.velocity(), 8);
+  EXPECT_FALSE(search_.bounces());
+  run(100, 50);
+  search_.step(0, -50, 0);
+  search_.let_go();
+  search_.step(100, -50, 0);
+  EXPECT_EQ(search_.velocity(), 8);
+}
+
+TEST_F(SearchForContact, StopsLettingGoWhereItsSensorHangs) {
+  run(100, 50);
+  search_.step(0, -50, 0);
+  search_.let_go();
+  int away = 0;
+  for (int i = 0; i < 5000; ++i) {
+    search_.step(0, -50, 0);
+    away += search_.velocity() != 0 ? 1 : 0;
+  }
+  EXPECT_NEAR(away, 1050, 2);
+}
+
 TEST_F(SearchForContact, EndsWithContactHoweverMuchABodyBounces) {
   std::mt19937 random(8);
   for (int i = 0; i < 50; ++i) {

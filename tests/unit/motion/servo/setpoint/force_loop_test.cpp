@@ -159,6 +159,34 @@ TEST_F(ForceControlled, SettlesOverSeededStiffnesses) {
   }
 }
 
+// Nothing must press ever more because its sensor says the same for ever.
+TEST(PushedJoint, IsToldToHaveASensorThatHangsBeforeItPressesMuchMore) {
+  ForceLoop loop(control(), kPeriod, 1);
+  ForceLoop::Seen seen{.wanted = -60, .measured = -20};
+  int cycles = 0;
+  while (!loop.sensor_hangs() && cycles < 5000) {
+    loop.step(seen);
+    ++cycles;
+  }
+  EXPECT_TRUE(loop.sensor_hangs());
+  EXPECT_TRUE(loop.pushes());
+  EXPECT_NEAR(loop.effort(), -125, 5) << "a quarter of the largest force";
+  EXPECT_LT(cycles, 500);
+  seen.measured = -20.001;
+  loop.step(seen);
+  EXPECT_FALSE(loop.sensor_hangs()) << "a digit that changes is an answer";
+}
+
+TEST(PushedJoint, IsPushedNoMoreTheOldWayOnceItIsToPull) {
+  ForceLoop loop(control(), kPeriod, 1);
+  for (int i = 0; i < 100; ++i) loop.step({.wanted = -60, .measured = -20 - 0.001 * i});
+  EXPECT_TRUE(loop.pushes());
+  loop.step({.wanted = 60, .measured = -20});
+  EXPECT_FALSE(loop.pushes());
+  loop.step({.wanted = 60, .measured = -20});
+  EXPECT_GT(loop.velocity(), 0) << "away from what it touched";
+}
+
 // Nothing brakes what moves before the force is seen: v √(k m).
 TEST(ForceControlParts, AreRefusedWhereTheApproachWouldPressTooHard) {
   ForceControl fast = control();

@@ -100,6 +100,28 @@ TEST_F(WatchedJoint, UnderForceControlHasALargestForce) {
   EXPECT_THAT(faults_.raised, ElementsAre(fault(Kind::ForceLimit, -201, 200)));
 }
 
+TEST_F(WatchedJoint, HasItsLargestForceUnderPositionControlTooWhereItHasASensor) {
+  watch_.step({.force = -201}, faults_);
+  EXPECT_THAT(faults_.raised, IsEmpty()) << "nobody measures it";
+  const auto bus = std::make_shared<ServoBus>(std::make_shared<FakeBus>(2));
+  bus->feedback[1].online = bus->feedback[1].sensor_valid = true;
+  joint_.force_sensor = ServoForceSensor{bus, 1, 1, 0};
+  watch_.step({.force = -200}, faults_);
+  EXPECT_THAT(faults_.raised, IsEmpty());
+  watch_.step({.force = -201}, faults_);
+  EXPECT_THAT(faults_.raised, ElementsAre(fault(Kind::ForceLimit, -201, 200)));
+  joint_.force.max_force = 0;
+  faults_.raised.clear();
+  watch_.step({.force = -1000}, faults_);
+  EXPECT_THAT(faults_.raised, IsEmpty()) << "none is declared";
+}
+
+TEST_F(WatchedJoint, UnderForceControlHasASensorThatHangs) {
+  joint_.method = ControlMethod::Force;
+  watch_.step({.force = -20, .force_hangs = true}, faults_);
+  EXPECT_THAT(faults_.raised, ElementsAre(fault(Kind::SensorLost, -20, 0)));
+}
+
 TEST_F(WatchedJoint, UnderForceControlSearchesNoFurtherThanItMay) {
   joint_.method = ControlMethod::Force;
   watch_.step({.contact = ContactState::Approaching, .searched = 5}, faults_);
