@@ -90,6 +90,7 @@ class ForceOnMill : public MillRun {
     const int cycles = 4000 + static_cast<int>(1000 * pressing_.dwell_s);
     for (int i = 0; i < cycles && !failed_; ++i) {
       cycle(mill);
+      if (i >= cycles - 1000) squares += share() * share();  // lost contact is an error, too
       if (report_.contact[2] == ContactState::Approaching) {
         if (touching > 0) continue;  // it bounces
         pass_.approach_set_mm_s = std::max(pass_.approach_set_mm_s, std::abs(report_.velocity_set[2]));
@@ -99,7 +100,6 @@ class ForceOnMill : public MillRun {
       ++touching;
       pass_.overshoot_n = std::max(pass_.overshoot_n, pressed_n() - pass_.wanted_n);
       if (std::abs(share()) > kShare) outside = touching;
-      if (i >= cycles - 1000) squares += share() * share();
     }
     pass_.settled_s = outside * 1e-3;
     pass_.rest_rms_share = std::sqrt(squares / 1000);

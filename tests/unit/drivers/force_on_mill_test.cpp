@@ -51,6 +51,9 @@ TEST(ForceOfStickingAxes, StaysWithinTwoPercentOnTheWhole) {
         {.surface_mm = -3, .stiffness_n_mm = stiffness, .slope = 0.005, .wave_mm = 0.02, .wave_length_mm = 50});
     EXPECT_LE(pass.rms_share, 0.02) << stiffness;
     EXPECT_LE(pass.rest_rms_share, 0.03) << stiffness;
+    const std::string at = "_percent_" + std::to_string(static_cast<int>(stiffness)) + "_n_mm";
+    RecordProperty("rms" + at, std::to_string(100 * pass.rms_share));
+    RecordProperty("rest_rms" + at, std::to_string(100 * pass.rest_rms_share));
     expect_a_quiet_end(pass, 0.01, 0.005);
   }
 }

@@ -12,7 +12,7 @@ class ContactSearch {
  public:
   ContactSearch(const ForceControl& control, double period_s) noexcept;
 
-  /// One cycle: what the joint is wanted to push with, what it does, and its measured velocity.
+  /// One cycle: what the joint is wanted to push with, what it does, and the velocity that it went with.
   void step(double wanted, double measured, double velocity) noexcept;
   [[nodiscard]] ContactState state() const noexcept { return state_; }
   /// By which contact is looked for, or let go of; 0: the joint holds.
