@@ -19,7 +19,8 @@ class NoBus final : public DigitalControlInterface {
   std::size_t axis_count() const noexcept override { return kAxes; }
   Expected<> start() override { return {}; }
   void stop() noexcept override {}
-  bool exchange(std::span<const DriveCommand>, std::span<DriveFeedback>) noexcept override { return true; }
+  void receive(std::span<DriveFeedback>) noexcept override {}
+  bool send(std::span<const DriveCommand>) noexcept override { return true; }
 
  private:
   static constexpr std::size_t kAxes = 256;

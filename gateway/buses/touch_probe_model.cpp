@@ -114,19 +114,15 @@ bool TouchProbeModel::contact(bool closed) noexcept {
 }
 
 bool TouchProbeModel::exchange(std::uint64_t outputs, std::uint64_t& inputs) noexcept {
-  // The drives have gone on to the end of the cycle that begins: what they told stands for where they were before.
-  const Instant next = look();
+  const Instant now = look();
   follow_switch();
   if (!io_->exchange(outputs, inputs)) return false;
-  if (now_) {
-    const bool came = before_ && before_->distance > 0 && now_->distance <= 0;
-    on_for_s_ = came ? (1 - change_of_contact(*before_, *now_)) * period_s_ : 0;
-    if (powered_ && contact(now_->distance <= 0)) inputs |= mask(probe_.touch_input);
-    if (powered_) inputs |= mask(probe_.ready_input);
-  }
-  if (now_) touch_drives(*now_, next);
-  before_ = now_;
-  now_ = next;
+  const bool came = before_ && before_->distance > 0 && now.distance <= 0;
+  on_for_s_ = came ? (1 - change_of_contact(*before_, now)) * period_s_ : 0;
+  if (powered_ && contact(now.distance <= 0)) inputs |= mask(probe_.touch_input);
+  if (powered_) inputs |= mask(probe_.ready_input);
+  if (before_) touch_drives(*before_, now);
+  before_ = now;
   return true;
 }
 

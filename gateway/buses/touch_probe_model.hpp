@@ -65,7 +65,7 @@ class TouchProbeModel final : public DigitalIoInterface {
   std::vector<Shaft> shafts_;
   std::optional<Spindle> spindle_;
 
-  std::optional<Instant> before_, now_;
+  std::optional<Instant> before_;
   double on_for_s_ = 0;
   double bounces_s_ = 0;  ///< still
   bool closed_ = false;

@@ -167,6 +167,7 @@ void ServoCycle::publish(const ServoWishes& wishes) noexcept {
     sample_.velocity_set = report_.velocity_set;
     sample_.acceleration_set = report_.acceleration_set;
     sample_.position = report_.position;
+    sample_.answer_delay = report_.answer_delay;
     sample_.truth = report_.truth;
     sample_.velocity = report_.velocity;
     sample_.effort = report_.effort;

@@ -110,8 +110,9 @@ class Master final : public DigitalControlInterface {
     });
   }
   void stop() noexcept override { bus_->stop(); }
-  bool exchange(std::span<const DriveCommand> out, std::span<DriveFeedback> in) noexcept override {
-    const bool sound = bus_->exchange(out, in);
+  void receive(std::span<DriveFeedback> in) noexcept override { bus_->receive(in); }
+  bool send(std::span<const DriveCommand> out) noexcept override {
+    const bool sound = bus_->send(out);
     constexpr long kPeriodNs = 1'000'000;
     constexpr long kSecondNs = 1'000'000'000;
     due_.tv_nsec += kPeriodNs;

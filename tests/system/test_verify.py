@@ -169,12 +169,12 @@ class Verify(unittest.TestCase):
         def gains_of_a_quicker_bus(device):
             for joint in device["Joints"]:
                 joint["Gains"][:3] = [gain * factor for gain, factor in zip(joint["Gains"], (4, 8, 3))]
-        self.assertIn("swings", verify(gains_of_a_quicker_bus).stderr)
 
-        def answer_at_once(device):
+        def answer_a_cycle_later(device):
             gains_of_a_quicker_bus(device)
-            device["DigitalControlInterface"]["Parameters"].update({"can0.model.late_answers": 0, "can1.model.late_answers": 0})
-        self.assertEqual(verify(answer_at_once).returncode, 0, "they would do on a quicker bus")
+            device["DigitalControlInterface"]["Parameters"].update({"can0.model.late_answers": 2, "can1.model.late_answers": 2})
+        self.assertIn("swings", verify(answer_a_cycle_later).stderr)
+        self.assertEqual(verify(gains_of_a_quicker_bus).returncode, 0, "they would do on a quicker bus")
         self.assertIn("spindle 0 does not come to 5000 rpm",
                       verify(lambda device: device["Spindles"][0].update(SpeedTimeout=0.1)).stderr)
         without = verify(lambda device: device["DigitalControlInterface"]["Parameters"].pop("can1.model.interface"))

@@ -12,11 +12,11 @@ constexpr int kMostFramesPerCycle = 512;
 
 }  // namespace
 
-bool CanopenInterface::exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept {
+void CanopenInterface::receive(std::span<DriveFeedback> feedback) noexcept {
   Impl& bus = *impl_;
   if (!bus.running) {
     std::fill(feedback.begin(), feedback.end(), DriveFeedback{});
-    return true;
+    return;
   }
   const std::chrono::nanoseconds now = bus.port->now();
   if (bus.fresh) {
@@ -34,6 +34,13 @@ bool CanopenInterface::exchange(std::span<const DriveCommand> commands, std::spa
   bus.watch(now);
   bus.take_positions();
   bus.fill(feedback);
+  bus.synced = bus.config.sync != SyncOrder::First || bus.send(sync_frame());
+}
+
+bool CanopenInterface::send(std::span<const DriveCommand> commands) noexcept {
+  Impl& bus = *impl_;
+  if (!bus.running) return true;
+  const std::chrono::nanoseconds now = bus.port->now();
   const bool sent = bus.send_cycle(commands, now);
   bus.ask_positions(commands, now);
   bus.send_asides(now);
@@ -117,7 +124,7 @@ bool CanopenInterface::Impl::send(const CanFrame& frame) noexcept {
 }
 
 bool CanopenInterface::Impl::send_cycle(std::span<const DriveCommand> commands, std::chrono::nanoseconds now) noexcept {
-  bool all = config.sync != SyncOrder::First || send(sync_frame());
+  bool all = synced;
   for (const std::size_t first : rpdos) all = send_setpoints(first, commands) && all;
   all = send_more_setpoints(commands) && all;
   if (config.sync == SyncOrder::Last) all = send(sync_frame()) && all;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <deque>
+#include <utility>
 
 #include "modbus/spindle_station.hpp"
 #include "rmac/fieldbus/drive_state_machine.hpp"
@@ -33,21 +34,30 @@ struct SpindleInterface::Impl {
     return now - report.asked <= stale || (says_busy && now - report.asked <= busy);
   }
 
-  /// One axis in one cycle. True when its drive is to be told something new.
-  [[nodiscard]] bool exchange(Axis& axis, const DriveCommand& command, DriveFeedback& feedback,
-                              Clock::time_point now) const noexcept {
+  /// What the station reported last, and whether that counts; a drive that fell out or tripped is without power.
+  std::pair<SpindleStation::Report, bool> look_at(Axis& axis, Clock::time_point now) const noexcept {
     const SpindleStation::Report report = axis.station.report();
     const bool fresh = counts(report, now);
+    if (!fresh || report.dropped) axis.power.step(0);
+    if (fresh && report.tripped) axis.power.trip(report.error_code);
+    return {report, fresh};
+  }
+
+  [[nodiscard]] DriveFeedback feedback_of(Axis& axis, Clock::time_point now) const noexcept {
+    const auto [report, fresh] = look_at(axis, now);
+    return {.statusword = axis.power.statusword(),
+            .error_code = axis.power.error_code(),
+            .velocity_rpm = fresh ? report.rpm : 0,
+            .online = fresh};
+  }
+
+  /// True when the drive is to be told something new.
+  [[nodiscard]] bool command(Axis& axis, const DriveCommand& command, Clock::time_point now) const noexcept {
     const bool reset = (command.controlword & ~axis.controlword & controlword::kFaultReset) != 0;
     axis.controlword = command.controlword;
     if (reset) axis.station.request_reset();
     axis.power.step(command.controlword);
-    if (!fresh || report.dropped) axis.power.step(0);
-    if (fresh && report.tripped) axis.power.trip(report.error_code);
-    feedback = {.statusword = axis.power.statusword(),
-                .error_code = axis.power.error_code(),
-                .velocity_rpm = fresh ? report.rpm : 0,
-                .online = fresh};
+    look_at(axis, now);
     return axis.station.command(
         axis.power.operational() ? static_cast<std::int32_t>(std::lround(command.target_velocity_rpm)) : 0);
   }
@@ -85,11 +95,16 @@ void SpindleInterface::stop() noexcept {
   }
 }
 
-bool SpindleInterface::exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept {
+void SpindleInterface::receive(std::span<DriveFeedback> feedback) noexcept {
+  const Clock::time_point now = impl_->clock();
+  for (std::size_t i = 0; i < impl_->axes.size(); ++i) feedback[i] = impl_->feedback_of(impl_->axes[i], now);
+}
+
+bool SpindleInterface::send(std::span<const DriveCommand> commands) noexcept {
   const Clock::time_point now = impl_->clock();
   bool news = false;
   for (std::size_t i = 0; i < impl_->axes.size(); ++i) {
-    news = impl_->exchange(impl_->axes[i], commands[i], feedback[i], now) || news;
+    news = impl_->command(impl_->axes[i], commands[i], now) || news;
   }
   if (news) impl_->line->wake();
   return true;

@@ -26,6 +26,7 @@ SimulatedInterface::SimulatedInterface(const std::vector<SimulatedAxis>& axes, d
     const auto* servo = std::get_if<AxisPlantParameters>(&axis);
     modes_.push_back(servo != nullptr ? servo->mode : DriveMode::ProfileVelocity);
   }
+  sent_.resize(axes.size());
 }
 
 Expected<> SimulatedInterface::start() {
@@ -37,6 +38,7 @@ Expected<> SimulatedInterface::start() {
   }
   // Answers that were on their way when it stopped are no answers to what is sent from now on.
   for (std::vector<DriveFeedback>& answers : before_) std::fill(answers.begin(), answers.end(), DriveFeedback{});
+  std::fill(sent_.begin(), sent_.end(), DriveCommand{});
   return {};
 }
 
@@ -92,32 +94,40 @@ void SimulatedInterface::set_answer_delay(int cycles) {
   before_.assign(static_cast<std::size_t>(cycles), silence);
 }
 
-bool SimulatedInterface::exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept {
-  const bool bus_failed = bus_failed_;
+void SimulatedInterface::receive(std::span<DriveFeedback> feedback) noexcept {
+  bus_fails_now_ = bus_failed_;
   move_surface();
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     act_on_injected(i);
-    const bool heard = !bus_failed && !injected_[i].offline;
     std::visit(
-        [&](auto& drive) {
-          if (heard) {
+        [&](const auto& drive) {
+          if (heard(i)) {
             feedback[i] = drive.feedback();
             read_sensor(i, feedback[i]);
-            drive.advance(commands[i], period_s_);
           } else {
             feedback[i].online = false;
             feedback[i].load_counts = drive.feedback().load_counts;  // what nobody sends goes on
-            if (drive.power().operational()) drive.power().trip(kHeartbeatError);
-            drive.advance(DriveCommand{}, period_s_);
           }
         },
         drives_[i]);
   }
-  if (!before_.empty()) {
-    std::swap_ranges(before_.front().begin(), before_.front().end(), feedback.begin());
-    std::rotate(before_.begin(), before_.begin() + 1, before_.end());
+  if (before_.empty()) return;
+  std::swap_ranges(before_.front().begin(), before_.front().end(), feedback.begin());
+  std::rotate(before_.begin(), before_.begin() + 1, before_.end());
+}
+
+bool SimulatedInterface::send(std::span<const DriveCommand> commands) noexcept {
+  const std::span<const DriveCommand> acts = before_.empty() ? sent_ : commands;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    std::visit(
+        [&](auto& drive) {
+          if (!heard(i) && drive.power().operational()) drive.power().trip(kHeartbeatError);
+          drive.advance(heard(i) ? acts[i] : DriveCommand{}, period_s_);
+        },
+        drives_[i]);
   }
-  return !bus_failed;
+  std::copy(commands.begin(), commands.end(), sent_.begin());
+  return !bus_fails_now_;
 }
 
 void SimulatedInterface::set_online(std::size_t axis, bool online) noexcept {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rmac::gateway {
 namespace {
@@ -18,8 +19,11 @@ std::optional<HitFinder::Found> HitFinder::read(const CycleSample& sample) {
   std::optional<Found> found;
   const bool another = sample.probe.hits != hits_;
   if (hit_) {
-    if (++hit_->samples == 1) hit_->around.assign(nodes_.end() - static_cast<std::ptrdiff_t>(count_), nodes_.end());
-    const bool told = (hit_->latching & ~sample.probe.latched) == 0;
+    const std::size_t late = *std::max_element(sample.answer_delay.begin(), sample.answer_delay.end());
+    const auto kept = static_cast<std::ptrdiff_t>(std::min(count_, kNodes + late));
+    const bool seen = std::cmp_greater(++hit_->samples, late) || another;
+    if (seen && hit_->around.empty()) hit_->around.assign(nodes_.end() - kept, nodes_.end());
+    const bool told = seen && (hit_->latching & ~sample.probe.latched) == 0;
     if (told || hit_->samples > kPatience || another) {
       found = find(*hit_, sample);
       hit_.reset();
@@ -50,19 +54,21 @@ HitFinder::Found HitFinder::find(const Hit& hit, const CycleSample& sample) {
   }
   Found found{hit.t_s, {}};
   if (!hit.stamped && fastest < sample.joint_count) {
-    found.t_s = passing(hit.around, fastest, probe.latched_position[fastest], hit.t_s);
+    found.t_s = passing(hit.around, fastest, sample.answer_delay[fastest], probe.latched_position[fastest], hit.t_s);
   }
-  found.joints = interpolate(hit.around, found.t_s, sample.joint_count);
   for (std::size_t j = 0; j < sample.joint_count; ++j) {
-    if ((latched >> j & 1U) != 0) found.joints[j] = probe.latched_position[j];
+    const bool is_known = (latched >> j & 1U) != 0;
+    found.joints.push_back(is_known ? probe.latched_position[j]
+                                    : joint_at(hit.around, j, sample.answer_delay[j], found.t_s));
   }
   return found;
 }
 
 /// When `joint` was at `position`; `t_s` where it was not, within the nodes.
-double HitFinder::passing(const std::vector<Node>& nodes, std::size_t joint, double position, double t_s) {
-  const auto beyond = [&](double at_s) { return interpolate(nodes, at_s, joint + 1)[joint] - position; };
-  double before = nodes.front().t_s, after = nodes.back().t_s;
+double HitFinder::passing(const std::vector<Node>& around, std::size_t joint, std::size_t delay, double position,
+                          double t_s) {
+  const auto beyond = [&](double at_s) { return joint_at(around, joint, delay, at_s) - position; };
+  double before = around.front().t_s, after = around[std::min(around.size(), kNodes) - 1].t_s;
   const double first = beyond(before);
   if (first * beyond(after) > 0) return t_s;
   for (int i = 0; i < 40; ++i) {
@@ -72,14 +78,16 @@ double HitFinder::passing(const std::vector<Node>& nodes, std::size_t joint, dou
   return (before + after) / 2;
 }
 
-std::vector<double> HitFinder::interpolate(const std::vector<Node>& nodes, double t_s, std::size_t joints) {
-  std::vector<double> found(joints, 0.0);
-  for (const Node& node : nodes) {
+/// Where `joint` was, whose place in a cycle was told `delay` cycles later.
+double HitFinder::joint_at(const std::vector<Node>& around, std::size_t joint, std::size_t delay, double t_s) {
+  const std::size_t count = std::clamp<std::size_t>(around.size() - std::min(delay, around.size()), 1, kNodes);
+  double found = 0;
+  for (std::size_t i = 0; i < count; ++i) {
     double weight = 1;  // Lagrange's
-    for (const Node& other : nodes) {
-      if (&other != &node) weight *= (t_s - other.t_s) / (node.t_s - other.t_s);
+    for (std::size_t other = 0; other < count; ++other) {
+      if (other != i) weight *= (t_s - around[other].t_s) / (around[i].t_s - around[other].t_s);
     }
-    for (std::size_t j = 0; j < joints; ++j) found[j] += weight * node.position[j];
+    found += weight * around[std::min(i + delay, around.size() - 1)].position[joint];
   }
   return found;
 }

@@ -34,7 +34,7 @@ void ServoLoop::Impl::cycle(const ServoCommand& command, ServoReport& report) no
   if (parts.virtual_mode) {
     move_without_drives(command);
   } else {
-    exchange_words(command);
+    receive(command);
     obey(command);
     read();
     watch_drives(command);
@@ -48,6 +48,8 @@ void ServoLoop::Impl::cycle(const ServoCommand& command, ServoReport& report) no
     watch_power();
     make_setpoints_of_drives();
     write();
+    exchange.send(state);
+    settle();
   }
   fill(command, report);
 }
@@ -76,8 +78,8 @@ void ServoLoop::Impl::settle() noexcept {
   setpoints.begin_braking();
 }
 
-void ServoLoop::Impl::exchange_words(const ServoCommand& command) noexcept {
-  const std::uint64_t now = exchange.run(command.outputs, state);
+void ServoLoop::Impl::receive(const ServoCommand& command) noexcept {
+  const std::uint64_t now = exchange.receive(command.outputs, state);
   const bool homes = state.state() == ServoState::Homing;
   inputs.step(now, homes ? wiring.joints_of(homing.drives()) : 0, state);
   probe.read(now);

@@ -40,7 +40,7 @@ struct ServoLoop::Impl {
   [[nodiscard]] ServoHandover handover() const noexcept;
 
   // The steps of a cycle, in their order.
-  void exchange_words(const ServoCommand& command) noexcept;
+  void receive(const ServoCommand& command) noexcept;
   void obey(const ServoCommand& command) noexcept;
   void read() noexcept;
   void watch_drives(const ServoCommand& command) noexcept;

@@ -40,6 +40,7 @@ void ServoLoop::Impl::fill(const ServoCommand& command, ServoReport& report) con
   report.velocity_set = setpoints.velocity();
   report.acceleration_set = setpoints.acceleration();
   report.position = joints.position();
+  report.answer_delay = wiring.joint_delays();
   report.velocity = joints.velocity();
   report.force = joints.force();
   report.effort = laws.effort();

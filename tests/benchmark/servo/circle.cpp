@@ -9,7 +9,7 @@ namespace {
 
 class LateMillRun : public MillRun {
  public:
-  LateMillRun() { simulated_->set_answer_delay(1); }
+  LateMillRun() { simulated_->set_answer_delay(2); }
 };
 
 }  // namespace
@@ -29,7 +29,7 @@ void circle_rows(Figures& figures) {
   figures.at_most("circle_reversal_spike_feedforward", 1e3 * exact.reversal_spike(), 3, "um", note);
   figures.at_most("circle_reversal_spike_feedforward_model_10_percent_low", 1e3 * wrong.reversal_spike(), 3, "um",
                   note);
-  const char* const late_note = "drives answer a cycle late, as on CAN";
+  const char* const late_note = "answers two cycles old, one more than of drives that measure at each SYNC";
   figures.at_most("circle_contour_feedforward_late_answers", 1e3 * late.contour_error(), 5, "um", late_note);
   figures.at_most("circle_reversal_spike_feedforward_late_answers", 1e3 * late.reversal_spike(), 3, "um", late_note);
   LawChanges all;

@@ -80,10 +80,11 @@ class InstantBus final : public DigitalControlInterface {
   [[nodiscard]] std::size_t axis_count() const noexcept override { return words.size(); }
   [[nodiscard]] Expected<> start() override { return {}; }
   void stop() noexcept override {}
-  [[nodiscard]] bool exchange(std::span<const DriveCommand> commands,
-                              std::span<DriveFeedback> feedback) noexcept override {
-    for (const DriveCommand& command : commands) torques += std::abs(command.target_torque_permille);
+  void receive(std::span<DriveFeedback> feedback) noexcept override {
     std::copy(words.begin(), words.end(), feedback.begin());
+  }
+  [[nodiscard]] bool send(std::span<const DriveCommand> commands) noexcept override {
+    for (const DriveCommand& command : commands) torques += std::abs(command.target_torque_permille);
     return true;
   }
   [[nodiscard]] bool tells_load(std::size_t /*axis*/) const noexcept override { return true; }

@@ -38,7 +38,7 @@ SmallForce small_force(double stiffness, int cases, std::mt19937& random) {
     ForceOnMill mill({.force_n = 20,
                       .dwell_s = between(0, 3),
                       .speed_mm_s = 20,
-                      .answer_delay = i % 2,
+                      .answer_delay = 2 * (i % 2),
                       .as_it_comes = true,
                       .seed = random()});
     const ForcePass pass = mill.press_and_go({.surface_mm = between(-4, -1),

@@ -67,7 +67,7 @@ TEST(SmallForce, StaysWithinTwoPercentWithoutALimitCycle) {
                             .approach_mm_s = between(2, 8),
                             .dwell_s = between(0, 2),
                             .speed_mm_s = 20,
-                            .answer_delay = i % 2,
+                            .answer_delay = 2 * (i % 2),
                             .as_it_comes = true,
                             .seed = static_cast<std::uint64_t>(100 + i)};
     const fieldbus::SimulatedContact part{.surface_mm = between(-4, -1),

@@ -201,9 +201,9 @@ class MillRun {
     const RestToRest profile(std::abs(distance), 2000.0 / 60, 1000, 10000);
     const std::array<double, kMaxJoints> start = command_.setpoint.position;
     const double sign = distance > 0 ? 1 : -1;
-    const auto cycles = static_cast<int>(std::ceil(profile.duration() * 1000));
+    const auto cycles = static_cast<int>(std::ceil(profile.duration() / period_s_));
     for (int i = 1; i <= cycles && !failed_; ++i) {
-      const auto [s, v, a] = profile.at(i * 1e-3);
+      const auto [s, v, a] = profile.at(i * period_s_);
       for (std::size_t j = 0; j < mill.loop().joint_count(); ++j) {
         command_.setpoint.position[j] = start[j] + sign * s;
         command_.setpoint.velocity[j] = sign * v;
@@ -243,6 +243,7 @@ class MillRun {
   }
 
  protected:
+  double period_s_ = 0.001;  ///< of moves; bus and loop have their own
   std::shared_ptr<fieldbus::SimulatedInterface> simulated_ =
       std::make_shared<fieldbus::SimulatedInterface>(fieldbus::default_simulated_axes(), 0.001);
   std::shared_ptr<ServoBus> bus_ = std::make_shared<ServoBus>(simulated_);

@@ -12,7 +12,7 @@ class SwingingMill {
   explicit SwingingMill(const std::vector<fieldbus::SimulatedAxis>& axes, const Mill::Edit& edit = {},
                         bool late = false)
       : simulated_(std::make_shared<fieldbus::SimulatedInterface>(axes, 0.001)) {
-    simulated_->set_answer_delay(late ? 1 : 0);
+    simulated_->set_answer_delay(late ? 2 : 0);
     bus_ = std::make_shared<ServoBus>(simulated_);
     mill_ = std::make_unique<Mill>("mill/3-axis/DMACXYZ", bus_, edit);
     command_.power = true;

@@ -12,13 +12,14 @@ class ReversedMotor final : public DigitalControlInterface {
   [[nodiscard]] std::size_t axis_count() const noexcept override { return bus_->axis_count(); }
   [[nodiscard]] Expected<> start() override { return bus_->start(); }
   void stop() noexcept override { bus_->stop(); }
-  [[nodiscard]] bool exchange(std::span<const DriveCommand> commands,
-                              std::span<DriveFeedback> feedback) noexcept override {
+  void receive(std::span<DriveFeedback> feedback) noexcept override {
+    bus_->receive(feedback);
+    feedback[0].torque_permille = static_cast<std::int16_t>(-feedback[0].torque_permille);
+  }
+  [[nodiscard]] bool send(std::span<const DriveCommand> commands) noexcept override {
     std::copy(commands.begin(), commands.end(), turned_.begin());
     turned_[0].target_torque_permille = static_cast<std::int16_t>(-turned_[0].target_torque_permille);
-    const bool works = bus_->exchange({turned_.data(), commands.size()}, feedback);
-    feedback[0].torque_permille = static_cast<std::int16_t>(-feedback[0].torque_permille);
-    return works;
+    return bus_->send({turned_.data(), commands.size()});
   }
   [[nodiscard]] DriveMode mode(std::size_t axis) const noexcept override { return bus_->mode(axis); }
   [[nodiscard]] bool tells_torque(std::size_t axis) const noexcept override { return bus_->tells_torque(axis); }

@@ -18,9 +18,9 @@ TEST_F(LawsOnMill, FeedforwardHoldsACircleWithinFiveMicrometresAtSixMetresAMinut
   record(ballbar);
 }
 
-// As on CAN: a drive's answer is one cycle old when it is read.
+// A drive's answer is two cycles old when it is read, one more than of drives that measure at each SYNC.
 TEST_F(LawsOnMill, FeedforwardHoldsItWithDrivesThatAnswerACycleLate) {
-  simulated_->set_answer_delay(1);
+  simulated_->set_answer_delay(2);
   const Ballbar ballbar = measure_circle([](nlohmann::json& device) { choose_feedforward(device); });
   EXPECT_LT(ballbar.contour_error(), 0.005);
   EXPECT_LT(ballbar.reversal_spike(), 0.003);

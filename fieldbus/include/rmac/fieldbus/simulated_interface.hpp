@@ -28,10 +28,11 @@ struct SimulatedContact {
   double counts_per_newton = 100;  ///< of the sensor; positive where the joint pushes towards larger positions
 };
 
-/// A bus of simulated drives. Feedback is what the drives measured when the exchange began, and commands act from then
-/// until the next exchange: as with a SYNC on a real bus, a drive acts on a measurement one cycle after it was taken.
+/// A bus of simulated drives with a SYNC: a drive acts a cycle after it measured what is answered so. What is received
+/// was measured as the cycle began, and what is sent acts from the begin of the next one on; or the other way round,
+/// `set_answer_delay`.
 ///
-/// Tests inject faults from any thread; they act in the next exchange.
+/// Tests inject faults from any thread; they act in the next cycle.
 class SimulatedInterface : public DigitalControlInterface {
  public:
   SimulatedInterface(const std::vector<SimulatedAxis>& axes, double period_s);
@@ -39,8 +40,8 @@ class SimulatedInterface : public DigitalControlInterface {
   [[nodiscard]] std::size_t axis_count() const noexcept override { return drives_.size(); }
   [[nodiscard]] Expected<> start() override;
   void stop() noexcept override;
-  [[nodiscard]] bool exchange(std::span<const DriveCommand> commands,
-                              std::span<DriveFeedback> feedback) noexcept override;
+  void receive(std::span<DriveFeedback> feedback) noexcept override;
+  [[nodiscard]] bool send(std::span<const DriveCommand> commands) noexcept override;
   [[nodiscard]] std::uint32_t input_bits(std::size_t axis) const noexcept override {
     constexpr std::uint32_t kLimitSwitches = 3;
     return is_spindle(axis) ? 0 : kLimitSwitches;
@@ -70,19 +71,20 @@ class SimulatedInterface : public DigitalControlInterface {
   void push(std::size_t axis, double torque_nm) noexcept;
   /// The force sensor's value is not valid; and is again.
   void set_sensor_lost(bool lost) noexcept { sensor_lost_ = lost; }
-  /// Puts a part under the tool. Before the first exchange.
+  /// Puts a part under the tool. Before the first cycle.
   void set_contact(const SimulatedContact& contact) noexcept { contact_ = contact; }
-  /// Answers are those of so many exchanges before: one as on a bus whose drives answer a SYNC while nobody reads on,
-  /// more where drives take their time. Before a servo loop is made with it.
+  /// Answers are those of so many cycles before, and what is sent acts at once: one as on a bus whose drives answer a
+  /// SYNC while nobody reads on, more where drives take their time. 0, as it is unless set, is above. Before a servo
+  /// loop is made with it.
   void set_answer_delay(int cycles);
   /// The bus itself fails, as on bus-off; and works again.
   void set_bus_failed(bool failed) noexcept { bus_failed_ = failed; }
 
-  /// Between exchanges: an edge at the touch probe of a drive that is no spindle, while its load stood at `angle_rad`.
+  /// Between cycles: an edge at the touch probe of a drive that is no spindle, while its load stood at `angle_rad`.
   void touch(std::size_t axis, TouchProbeEdge edge, double angle_rad) noexcept {
     std::get_if<SimulatedServoDrive>(&drives_[axis])->touch(edge, angle_rad);
   }
-  /// Between exchanges: where a shaft really is. For an axis that is no spindle; and one that is.
+  /// Between cycles: where a shaft really is. For an axis that is no spindle; and one that is.
   [[nodiscard]] AxisPlant& plant(std::size_t axis);
   [[nodiscard]] const SpindlePlant& spindle(std::size_t axis) const;
   [[nodiscard]] bool is_spindle(std::size_t axis) const noexcept {
@@ -100,6 +102,7 @@ class SimulatedInterface : public DigitalControlInterface {
     std::atomic<double> push_nm{0};
   };
   void act_on_injected(std::size_t axis) noexcept;
+  [[nodiscard]] bool heard(std::size_t axis) const noexcept { return !bus_fails_now_ && !injected_[axis].offline; }
   void move_surface() noexcept;
   void read_sensor(std::size_t axis, DriveFeedback& words) noexcept;
 
@@ -107,8 +110,10 @@ class SimulatedInterface : public DigitalControlInterface {
   std::vector<DriveMode> modes_;
   std::vector<Injected> injected_;
   std::atomic<bool> bus_failed_{false};
+  bool bus_fails_now_ = false;  ///< in this cycle
   std::atomic<bool> sensor_lost_{false};
   std::optional<SimulatedContact> contact_;
+  std::vector<DriveCommand> sent_;                  ///< in the cycle before
   std::vector<std::vector<DriveFeedback>> before_;  ///< what late answers will tell, the next ones first
   double period_s_;
 };

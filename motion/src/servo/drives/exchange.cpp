@@ -5,6 +5,14 @@
 
 namespace rmac {
 
+namespace {
+
+std::int64_t nanoseconds_since(std::chrono::steady_clock::time_point begun) noexcept {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now() - begun).count();
+}
+
+}  // namespace
+
 Exchange::Exchange(const ServoLoopParts& parts) : parts_(parts) {
   const auto add = [this](const std::shared_ptr<ServoBus>& bus) {
     if (std::find(buses_.begin(), buses_.end(), bus) == buses_.end()) buses_.push_back(bus);
@@ -16,27 +24,33 @@ Exchange::Exchange(const ServoLoopParts& parts) : parts_(parts) {
   }
 }
 
-std::uint64_t Exchange::run(std::uint64_t outputs, FaultSink& faults) noexcept {
+std::uint64_t Exchange::receive(std::uint64_t outputs, FaultSink& faults) noexcept {
   const auto begun = std::chrono::steady_clock::now();
   if (fresh_) {
     for (const auto& bus : buses_) std::fill(bus->commands.begin(), bus->commands.end(), DriveCommand{});
     fresh_ = false;
   }
-  for (std::size_t b = 0; b < buses_.size(); ++b) {
-    if (buses_[b]->interface->exchange(buses_[b]->commands, buses_[b]->feedback)) continue;
-    faults.raise({ServoFault::Kind::BusFailure, ServoFault::Part::Bus, static_cast<std::uint32_t>(b), 0, 0});
-  }
   std::uint64_t inputs = 0;
   if (parts_.io && !parts_.io->exchange(outputs, inputs)) {
     faults.raise({ServoFault::Kind::IoFailure, ServoFault::Part::Io, 0, 0, 0});
   }
-  took_ns_ = std::chrono::nanoseconds(std::chrono::steady_clock::now() - begun).count();
+  for (const auto& bus : buses_) bus->interface->receive(bus->feedback);
+  took_ns_ = nanoseconds_since(begun);
   for (const ServoDriveInput& input : parts_.drive_inputs) {
     const ServoActuator& teller = parts_.actuators[input.actuator];
     inputs &= ~input.input;
     if ((teller.bus->feedback[teller.axis].inputs & input.drive_bit) != 0) inputs |= input.input;
   }
   return inputs;
+}
+
+void Exchange::send(FaultSink& faults) noexcept {
+  const auto begun = std::chrono::steady_clock::now();
+  for (std::size_t b = 0; b < buses_.size(); ++b) {
+    if (buses_[b]->interface->send(buses_[b]->commands)) continue;
+    faults.raise({ServoFault::Kind::BusFailure, ServoFault::Part::Bus, static_cast<std::uint32_t>(b), 0, 0});
+  }
+  took_ns_ += nanoseconds_since(begun);
 }
 
 void Exchange::take_over() noexcept {

@@ -9,22 +9,23 @@
 
 namespace rmac {
 
-/// Words out to all buses of the mechanism and to its I/O, and answers in. Real-time safe but for its making.
+/// Answers in from all buses of the mechanism and its I/O, and words out. Real-time safe but for its making.
 class Exchange {
  public:
   /// `parts` must outlive it.
   explicit Exchange(const ServoLoopParts& parts);
 
-  /// One exchange; the machine's inputs, those that drives tell among them. The first one of a loop that took nothing
-  /// over sends words that ask for nothing.
-  [[nodiscard]] std::uint64_t run(std::uint64_t outputs, FaultSink& faults) noexcept;
+  /// The exchange with the I/O, then answers of all drives; the machine's inputs, those that drives tell among them.
+  [[nodiscard]] std::uint64_t receive(std::uint64_t outputs, FaultSink& faults) noexcept;
+  /// What was made of them.
+  void send(FaultSink& faults) noexcept;
   /// Another loop's words stand: those for drives that this loop has go on, the others ask for nothing.
   void take_over() noexcept;
   /// The bus that a fault of a bus names by `index`; nullptr where there is none.
   [[nodiscard]] const ServoBus* bus(std::size_t index) const noexcept {
     return index < buses_.size() ? buses_[index].get() : nullptr;
   }
-  /// Time that the last exchange took.
+  /// Time that both took in this cycle.
   [[nodiscard]] std::int64_t took_ns() const noexcept { return took_ns_; }
 
  private:

@@ -20,11 +20,11 @@ constexpr double kLeastAcceleration = 1e-3;
 }  // namespace
 
 /// What acted while the joint went its last way. A torque that drives measure is told with the position. What was
-/// commanded a cycle ago goes out now; what went out before acted.
+/// commanded a cycle ago acted in that cycle, at the earliest.
 void OscillationWatch::take_effort(const OscillationSeen& seen) noexcept {
   std::rotate(commanded_.begin(), commanded_.end() - 1, commanded_.end());
   commanded_[0] = seen.effort;
-  last_effort_ = seen.effort_measured ? seen.effort : commanded_[static_cast<std::size_t>(1 + seen.answer_delay)];
+  last_effort_ = seen.effort_measured ? seen.effort : commanded_[static_cast<std::size_t>(std::max(1, seen.answer_delay))];
 }
 
 void OscillationWatch::begin() noexcept {

@@ -26,8 +26,9 @@ class Paced final : public DigitalControlInterface {
     });
   }
   void stop() noexcept override { bus_.stop(); }
-  bool exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept override {
-    const bool sound = bus_.exchange(commands, feedback);
+  void receive(std::span<DriveFeedback> feedback) noexcept override { bus_.receive(feedback); }
+  bool send(std::span<const DriveCommand> commands) noexcept override {
+    const bool sound = bus_.send(commands);
     wire_.pass(milliseconds(1));
     return sound;
   }

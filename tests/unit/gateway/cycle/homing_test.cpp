@@ -17,34 +17,38 @@ class HomingBus final : public fieldbus::SimulatedInterface {
 
   HomingBus() : SimulatedInterface(fieldbus::default_simulated_axes(), 0.001), drives_(axis_count()) {}
 
-  bool exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept override {
-    std::vector<DriveCommand> forwarded(commands.begin(), commands.end());
-    for (DriveCommand& command : forwarded) {
-      if (command.mode != DriveMode::Homing) continue;
-      command.mode = DriveMode::CyclicSyncTorque;
-      command.target_torque_permille = 0;
-    }
-    const bool sound = SimulatedInterface::exchange(forwarded, feedback);
+  void receive(std::span<DriveFeedback> feedback) noexcept override {
+    SimulatedInterface::receive(feedback);
     for (std::size_t i = 0; i < drives_.size(); ++i) {
       Drive& drive = drives_[i];
-      const bool looks =
-          commands[i].mode == DriveMode::Homing && (commands[i].controlword & controlword::kStartHoming) != 0;
+      const bool homes = drive.told.mode == DriveMode::Homing;
+      const bool looks = homes && (drive.told.controlword & controlword::kStartHoming) != 0;
       drive.cycles = looks ? drive.cycles + 1 : 0;
       if (drive.cycles == kCycles) {
         drive.shift = kHome - feedback[i].position_counts;
         ++drive.homings;
       }
       feedback[i].position_counts += drive.shift;
-      feedback[i].mode = commands[i].mode;
-      if (commands[i].mode == DriveMode::Homing && (!looks || drive.cycles >= kCycles)) {
+      feedback[i].mode = drive.told.mode;
+      if (homes && (!looks || drive.cycles >= kCycles)) {
         feedback[i].statusword |= statusword::kTargetReached;
         if (looks) feedback[i].statusword |= statusword::kHomingAttained;
       }
     }
-    return sound;
+  }
+  bool send(std::span<const DriveCommand> commands) noexcept override {
+    std::vector<DriveCommand> forwarded(commands.begin(), commands.end());
+    for (std::size_t i = 0; i < drives_.size(); ++i) {
+      drives_[i].told = commands[i];
+      if (forwarded[i].mode != DriveMode::Homing) continue;
+      forwarded[i].mode = DriveMode::CyclicSyncTorque;
+      forwarded[i].target_torque_permille = 0;
+    }
+    return SimulatedInterface::send(forwarded);
   }
 
   struct Drive {
+    DriveCommand told;
     int cycles = 0;
     std::int32_t shift = 0;
     std::atomic<int> homings{0};

@@ -15,11 +15,10 @@ namespace {
 class DroppingBus final : public fieldbus::SimulatedInterface {
  public:
   DroppingBus() : SimulatedInterface(fieldbus::default_simulated_axes(), 0.001) {}
-  bool exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept override {
+  void receive(std::span<DriveFeedback> feedback) noexcept override {
     constexpr std::uint16_t kSwitchedOn = 0x23;
-    const bool works = SimulatedInterface::exchange(commands, feedback);
+    SimulatedInterface::receive(feedback);
     if (dropped) feedback[0].statusword = kSwitchedOn;
-    return works;
   }
   std::atomic<bool> dropped{false};
 };

@@ -76,7 +76,8 @@ class TellingBus final : public DigitalControlInterface, public fieldbus::Silenc
   std::size_t axis_count() const noexcept override { return 3; }
   Expected<> start() override { return {}; }
   void stop() noexcept override {}
-  bool exchange(std::span<const DriveCommand>, std::span<DriveFeedback>) noexcept override { return true; }
+  void receive(std::span<DriveFeedback>) noexcept override {}
+  bool send(std::span<const DriveCommand>) noexcept override { return true; }
   std::optional<std::string> silence_text(std::size_t axis) const override {
     if (axis != 1) return {};
     return "node 7: two devices have this node id; give each an id of its own";

@@ -30,9 +30,9 @@ class BusWithAFault final : public fieldbus::SimulatedInterface {
       : SimulatedInterface(fieldbus::default_simulated_axes(), 0.001), error_code_(error_code), stays_(stays) {
     trip(1, error_code);
   }
-  bool exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept override {
+  void receive(std::span<DriveFeedback> feedback) noexcept override {
     if (stays_) trip(1, error_code_);
-    return SimulatedInterface::exchange(commands, feedback);
+    SimulatedInterface::receive(feedback);
   }
 
  private:

@@ -145,13 +145,14 @@ class FakeBus : public DigitalControlInterface {
   [[nodiscard]] std::size_t axis_count() const noexcept override { return drives.size(); }
   [[nodiscard]] Expected<> start() override { return {}; }
   void stop() noexcept override {}
-  [[nodiscard]] bool exchange(std::span<const DriveCommand> commands,
-                              std::span<DriveFeedback> feedback) noexcept override {
+  void receive(std::span<DriveFeedback> feedback) noexcept override {
+    for (std::size_t i = 0; i < drives.size(); ++i) feedback[i] = drives[i].words;
+  }
+  [[nodiscard]] bool send(std::span<const DriveCommand> commands) noexcept override {
     ++exchanges;
     for (std::size_t i = 0; i < drives.size(); ++i) {
       drives[i].command = commands[i];
       if (!drives[i].stuck) drives[i].words.statusword = next(drives[i].words.statusword, commands[i].controlword);
-      feedback[i] = drives[i].words;
     }
     return works;
   }

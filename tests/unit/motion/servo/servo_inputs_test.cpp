@@ -9,14 +9,13 @@ constexpr std::uint64_t kProbe = 1U << 5U, kUpper = 1U << 6U, kLower = 1U << 7U;
 class LatchingBus : public FakeBus {
  public:
   using FakeBus::FakeBus;
-  [[nodiscard]] bool exchange(std::span<const DriveCommand> commands,
-                              std::span<DriveFeedback> feedback) noexcept override {
+  [[nodiscard]] bool send(std::span<const DriveCommand> commands) noexcept override {
     for (std::size_t i = 0; i < drives.size(); ++i) {
       DriveFeedback& words = drives[i].words;
       words.touch_probe = static_cast<std::uint16_t>((commands[i].touch_probe & 1U) != 0 ? words.touch_probe | 1U : 0U);
       functions.at(i) = commands[i].touch_probe;
     }
-    return FakeBus::exchange(commands, feedback);
+    return FakeBus::send(commands);
   }
   void latch(std::size_t axis, std::int32_t counts) {
     if ((functions.at(axis) & 0x11U) != 0x11U || (drives[axis].words.touch_probe & 2U) != 0) return;

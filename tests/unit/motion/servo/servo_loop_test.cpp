@@ -34,14 +34,13 @@ TEST_F(ServoLoopTest, GivesItsLawsTheEffortLimit) {
   EXPECT_EQ(laws[0]->limit, 5);
 }
 
-TEST_F(ServoLoopTest, TurnsAnErrorIntoTorqueOfTheNextExchange) {
+// Red when what a drive measured is answered a cycle later: at 1 kHz that is a third of a loop's delay.
+TEST_F(ServoLoopTest, TurnsAnErrorIntoTorqueInItsOwnCycle) {
   build();
   engage();
   command.setpoint.position[0] = 0.5;
   cycle();
   EXPECT_EQ(torque(0), 50);  // 0.1 N/mm · 0.5 mm, in per mille of 1 N·m
-  EXPECT_EQ(fake->drives[0].command.target_torque_permille, 0);
-  cycle();
   EXPECT_EQ(fake->drives[0].command.target_torque_permille, 50);
   EXPECT_EQ(fake->drives[0].command.mode, DriveMode::CyclicSyncTorque);
 }

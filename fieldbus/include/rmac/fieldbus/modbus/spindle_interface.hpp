@@ -31,8 +31,8 @@ class SpindleInterface final : public DigitalControlInterface,
   [[nodiscard]] Expected<> start() override;
   void stop() noexcept override;
   /// Always true: the line's troubles are its drives', which go offline.
-  [[nodiscard]] bool exchange(std::span<const DriveCommand> commands,
-                              std::span<DriveFeedback> feedback) noexcept override;
+  void receive(std::span<DriveFeedback> feedback) noexcept override;
+  [[nodiscard]] bool send(std::span<const DriveCommand> commands) noexcept override;
   [[nodiscard]] DriveMode mode(std::size_t /*axis*/) const noexcept override { return DriveMode::ProfileVelocity; }
   [[nodiscard]] std::string fault_text(std::size_t axis, std::uint16_t error_code) const override;
   [[nodiscard]] std::optional<std::string> silence_text(std::size_t axis) const override;

@@ -90,10 +90,16 @@ class DigitalControlInterface {
   [[nodiscard]] virtual Expected<> start() = 0;
   /// Leaves every drive disabled. Off the cycle; cannot fail.
   virtual void stop() noexcept = 0;
-  /// One cycle: sends `commands`, receives `feedback`; axis_count() of each. False when the bus itself failed.
-  /// Real-time safe.
-  [[nodiscard]] virtual bool exchange(std::span<const DriveCommand> commands,
-                                      std::span<DriveFeedback> feedback) noexcept = 0;
+  /// What the drives tell, axis_count() of them: once a cycle, at its begin. Never waits for them. Real-time safe.
+  virtual void receive(std::span<DriveFeedback> feedback) noexcept = 0;
+  /// What they are to do, which was made of what `receive` told in the same cycle; axis_count() of them, once a cycle.
+  /// False when the bus itself failed, whether in receiving or in sending. Real-time safe.
+  [[nodiscard]] virtual bool send(std::span<const DriveCommand> commands) noexcept = 0;
+  /// Both, for who makes its commands of what was told a cycle before.
+  [[nodiscard]] bool exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept {
+    receive(feedback);
+    return send(commands);
+  }
   /// The mode in which this axis, of a joint or a spindle, follows its setpoints. Before or after start.
   [[nodiscard]] virtual DriveMode mode(std::size_t /*axis*/) const noexcept { return DriveMode::CyclicSyncTorque; }
   /// Bits of `DriveFeedback::inputs` that this axis tells: a name for another one is a mistake.
@@ -104,9 +110,9 @@ class DigitalControlInterface {
   [[nodiscard]] virtual bool tells_torque(std::size_t /*axis*/) const noexcept { return false; }
   /// Whether the answers of this axis hold where its load truly is, whatever its encoder says: simulated axes alone.
   [[nodiscard]] virtual bool tells_load(std::size_t /*axis*/) const noexcept { return false; }
-  /// How many cycles before an exchange this axis was where it tells in it, at most `kMostAnswerDelay`: 1 where the
-  /// SYNC of an exchange has the drives measure, and the next exchange reads what they answered; more where a drive
-  /// itself takes its time. Once started.
+  /// How many cycles before `receive` this axis was where it tells in it, at most `kMostAnswerDelay`: 1 where the SYNC
+  /// of one cycle has the drives measure, and the next cycle receives what they answered; more where a drive itself
+  /// takes its time. Once started.
   [[nodiscard]] virtual int answer_delay(std::size_t /*axis*/) const noexcept { return 0; }
   /// Whether `DriveCommand::torque_offset_permille` reaches this axis, in a mode that has it.
   [[nodiscard]] virtual bool takes_torque_offset(std::size_t /*axis*/) const noexcept { return false; }

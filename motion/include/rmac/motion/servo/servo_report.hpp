@@ -19,6 +19,7 @@ struct ServoReport {
   ServoFault fault;
   std::array<double, kMaxJoints> position_set{}, velocity_set{}, acceleration_set{};
   std::array<double, kMaxJoints> position{}, velocity{};
+  std::array<std::uint8_t, kMaxJoints> answer_delay{};  ///< so many cycles before was a joint at `position`
   /// Positions at the loads, whatever encoders say, for who judges the loop: it sees nothing of them. None where a
   /// drive does not tell (`DigitalControlInterface::tells_load`).
   std::optional<std::array<double, kMaxJoints>> truth;

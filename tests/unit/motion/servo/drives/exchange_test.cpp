@@ -31,6 +31,11 @@ class Exchanged : public testing::Test {
     parts_.io = io_;
     for (DriveCommand& words : bus_->commands) words.controlword = 0xF;
   }
+  std::uint64_t run(Exchange& exchange, std::uint64_t outputs = 0) {
+    const std::uint64_t inputs = exchange.receive(outputs, faults_);
+    exchange.send(faults_);
+    return inputs;
+  }
   std::shared_ptr<FakeBus> fake_ = std::make_shared<FakeBus>(4), fake_other_ = std::make_shared<FakeBus>(1);
   std::shared_ptr<ServoBus> bus_ = std::make_shared<ServoBus>(fake_), other_ = std::make_shared<ServoBus>(fake_other_);
   std::shared_ptr<FakeIo> io_ = std::make_shared<FakeIo>();
@@ -40,7 +45,7 @@ class Exchanged : public testing::Test {
 
 TEST_F(Exchanged, EachBusIsExchangedOnce) {
   Exchange exchange(parts_);
-  (void)exchange.run(0, faults_);
+  run(exchange);
   EXPECT_EQ(fake_->exchanges, 1);
   EXPECT_EQ(fake_other_->exchanges, 1);
   EXPECT_TRUE(faults_.raised.empty());
@@ -48,17 +53,27 @@ TEST_F(Exchanged, EachBusIsExchangedOnce) {
 
 TEST_F(Exchanged, WordsThatWereThereAskForNothingAtFirstAndCountFromThenOn) {
   Exchange exchange(parts_);
-  (void)exchange.run(0, faults_);
+  run(exchange);
   EXPECT_EQ(fake_->drives[0].command.controlword, 0);
   bus_->commands[0].controlword = 0x6;
-  (void)exchange.run(0, faults_);
+  run(exchange);
   EXPECT_EQ(fake_->drives[0].command.controlword, 0x6);
+}
+
+// Red when what is sent was made of the answers of a cycle before: a whole cycle's delay in every loop.
+TEST_F(Exchanged, WhatIsMadeOfAnswersGoesOutInTheirCycle) {
+  Exchange exchange(parts_);
+  fake_->drives[0].words.position_counts = 77;
+  (void)exchange.receive(0, faults_);
+  bus_->commands[0].target_position_counts = bus_->feedback[0].position_counts;
+  exchange.send(faults_);
+  EXPECT_EQ(fake_->drives[0].command.target_position_counts, 77);
 }
 
 TEST_F(Exchanged, WordsThatAnotherLoopLeftStandForItsOwnDrives) {
   Exchange exchange(parts_);
   exchange.take_over();
-  (void)exchange.run(0, faults_);
+  run(exchange);
   EXPECT_EQ(fake_->drives[0].command.controlword, 0xF);
   EXPECT_EQ(fake_->drives[1].command.controlword, 0xF);
   EXPECT_EQ(fake_->drives[2].command.controlword, 0) << "nobody's";
@@ -68,7 +83,7 @@ TEST_F(Exchanged, WordsThatAnotherLoopLeftStandForItsOwnDrives) {
 TEST_F(Exchanged, BusThatFailsIsNamedByItsPlace) {
   Exchange exchange(parts_);
   fake_other_->works = false;
-  (void)exchange.run(0, faults_);
+  run(exchange);
   EXPECT_THAT(faults_.raised,
               testing::ElementsAre(is_fault(ServoFault::Kind::BusFailure, ServoFault::Part::Bus, 1, 0, 0)));
 }
@@ -76,7 +91,7 @@ TEST_F(Exchanged, BusThatFailsIsNamedByItsPlace) {
 TEST_F(Exchanged, IoThatFailsIsAFaultOfItsOwn) {
   Exchange exchange(parts_);
   io_->works = false;
-  (void)exchange.run(0, faults_);
+  run(exchange);
   EXPECT_THAT(faults_.raised,
               testing::ElementsAre(is_fault(ServoFault::Kind::IoFailure, ServoFault::Part::Io, 0, 0, 0)));
 }
@@ -86,7 +101,7 @@ TEST_F(Exchanged, OutputsGoOutAndInputsComeInWithThoseOfDrives) {
   Exchange exchange(parts_);
   io_->told = 0x21;
   fake_->drives[1].words.inputs = 0x2;
-  EXPECT_EQ(exchange.run(0x5, faults_), 0x11U) << "the drive's word decides on its inputs, whatever the I/O has there";
+  EXPECT_EQ(run(exchange, 0x5), 0x11U) << "the drive's word decides on its inputs, whatever the I/O has there";
   EXPECT_EQ(io_->sent, 0x5U);
 }
 

@@ -15,14 +15,13 @@ class ReadableBus final : public FakeBus {
  public:
   using FakeBus::FakeBus;
   [[nodiscard]] bool reads_positions(std::size_t) const noexcept override { return true; }
-  [[nodiscard]] bool exchange(std::span<const DriveCommand> commands,
-                              std::span<DriveFeedback> feedback) noexcept override {
+  [[nodiscard]] bool send(std::span<const DriveCommand> commands) noexcept override {
     for (std::size_t i = 0; i < drives.size(); ++i) {
       if (!commands[i].read_position || !reads || exchanges % 4 != 0) continue;
       drives[i].words.position_read_counts = truth[i] ? *truth[i] : drives[i].words.position_counts;
       ++drives[i].words.position_reads;
     }
-    return FakeBus::exchange(commands, feedback);
+    return FakeBus::send(commands);
   }
   bool reads = true;
   std::array<std::optional<std::int32_t>, 5> truth{};  ///< where it differs from what is answered
