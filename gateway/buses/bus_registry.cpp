@@ -19,7 +19,7 @@ class NoBus final : public DigitalControlInterface {
   std::size_t axis_count() const noexcept override { return kAxes; }
   Expected<> start() override { return {}; }
   void stop() noexcept override {}
-  void receive(std::span<DriveFeedback>) noexcept override {}
+  [[nodiscard]] bool receive(std::span<DriveFeedback>) noexcept override { return true; }
   bool send(std::span<const DriveCommand>) noexcept override { return true; }
 
  private:

@@ -110,7 +110,7 @@ class Master final : public DigitalControlInterface {
     });
   }
   void stop() noexcept override { bus_->stop(); }
-  void receive(std::span<DriveFeedback> in) noexcept override { bus_->receive(in); }
+  [[nodiscard]] bool receive(std::span<DriveFeedback> in) noexcept override { return bus_->receive(in); }
   bool send(std::span<const DriveCommand> out) noexcept override {
     const bool sound = bus_->send(out);
     constexpr long kPeriodNs = 1'000'000;

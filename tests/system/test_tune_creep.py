@@ -28,7 +28,7 @@ class TuneCreep(TuningTest):
 
     def test_the_tree_has_what_tune_finds(self):
         """Gains, filters, friction and cogging of its machines are those that anybody finds on their axes."""
-        for machine, number, travel in (("DMACXYZ", 0, "20"), ("SuginoXYZ", 0, "40"), ("TarusXYZCATwin", 4, "40")):
+        for machine, number, travel in (("DMACXYZ", 0, "20"), ("SuginoXYZ", 0, "40"), ("TarusXYZCATwin", 0, "40")):
             with self.subTest(machine), Appliance() as appliance, tempfile.TemporaryDirectory() as folder:
                 self.rmac(appliance, "load", machine)
                 words = ("tune", str(number), "--travel", travel, "--creep", "-o", str(pathlib.Path(folder, "tune.png")))
@@ -42,7 +42,7 @@ class TuneCreep(TuningTest):
             self.assertAlmostEqual(gain / own, 1, delta=0.06)
         (notch,), (own,) = found["proposed"]["filters"]["Resonances"], joint["Resonances"]
         self.assertAlmostEqual(notch["Frequency"], own["Frequency"], delta=3)
-        self.assertEqual(found["proposed"]["filters"]["LowPass"], joint["LowPass"])
+        self.assertEqual(found["proposed"]["filters"]["LowPass"], joint.get("LowPass", 0))
         parameters = joint["ServoControlLaw"]["Parameters"]
         mass, friction = joint["Gains"][4:6] or (parameters["mass"], parameters["friction"])
         self.assertAlmostEqual(found["plant"]["mass"] / mass, 1, delta=0.02)

@@ -12,11 +12,11 @@ constexpr int kMostFramesPerCycle = 512;
 
 }  // namespace
 
-void CanopenInterface::receive(std::span<DriveFeedback> feedback) noexcept {
+bool CanopenInterface::receive(std::span<DriveFeedback> feedback) noexcept {
   Impl& bus = *impl_;
   if (!bus.running) {
     std::fill(feedback.begin(), feedback.end(), DriveFeedback{});
-    return;
+    return true;
   }
   const std::chrono::nanoseconds now = bus.port->now();
   if (bus.fresh) {
@@ -35,6 +35,7 @@ void CanopenInterface::receive(std::span<DriveFeedback> feedback) noexcept {
   bus.take_positions();
   bus.fill(feedback);
   bus.synced = bus.config.sync != SyncOrder::First || bus.send(sync_frame());
+  return true;
 }
 
 bool CanopenInterface::send(std::span<const DriveCommand> commands) noexcept {

@@ -95,9 +95,10 @@ void SpindleInterface::stop() noexcept {
   }
 }
 
-void SpindleInterface::receive(std::span<DriveFeedback> feedback) noexcept {
+bool SpindleInterface::receive(std::span<DriveFeedback> feedback) noexcept {
   const Clock::time_point now = impl_->clock();
   for (std::size_t i = 0; i < impl_->axes.size(); ++i) feedback[i] = impl_->feedback_of(impl_->axes[i], now);
+  return true;
 }
 
 bool SpindleInterface::send(std::span<const DriveCommand> commands) noexcept {

@@ -94,7 +94,7 @@ void SimulatedInterface::set_answer_delay(int cycles) {
   before_.assign(static_cast<std::size_t>(cycles), silence);
 }
 
-void SimulatedInterface::receive(std::span<DriveFeedback> feedback) noexcept {
+bool SimulatedInterface::receive(std::span<DriveFeedback> feedback) noexcept {
   bus_fails_now_ = bus_failed_;
   move_surface();
   for (std::size_t i = 0; i < drives_.size(); ++i) {
@@ -111,9 +111,11 @@ void SimulatedInterface::receive(std::span<DriveFeedback> feedback) noexcept {
         },
         drives_[i]);
   }
-  if (before_.empty()) return;
-  std::swap_ranges(before_.front().begin(), before_.front().end(), feedback.begin());
-  std::rotate(before_.begin(), before_.begin() + 1, before_.end());
+  if (!before_.empty()) {
+    std::swap_ranges(before_.front().begin(), before_.front().end(), feedback.begin());
+    std::rotate(before_.begin(), before_.begin() + 1, before_.end());
+  }
+  return !bus_fails_now_;
 }
 
 bool SimulatedInterface::send(std::span<const DriveCommand> commands) noexcept {

@@ -80,8 +80,9 @@ class InstantBus final : public DigitalControlInterface {
   [[nodiscard]] std::size_t axis_count() const noexcept override { return words.size(); }
   [[nodiscard]] Expected<> start() override { return {}; }
   void stop() noexcept override {}
-  void receive(std::span<DriveFeedback> feedback) noexcept override {
+  [[nodiscard]] bool receive(std::span<DriveFeedback> feedback) noexcept override {
     std::copy(words.begin(), words.end(), feedback.begin());
+    return true;
   }
   [[nodiscard]] bool send(std::span<const DriveCommand> commands) noexcept override {
     for (const DriveCommand& command : commands) torques += std::abs(command.target_torque_permille);

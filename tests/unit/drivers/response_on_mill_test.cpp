@@ -12,9 +12,10 @@ class ReversedMotor final : public DigitalControlInterface {
   [[nodiscard]] std::size_t axis_count() const noexcept override { return bus_->axis_count(); }
   [[nodiscard]] Expected<> start() override { return bus_->start(); }
   void stop() noexcept override { bus_->stop(); }
-  void receive(std::span<DriveFeedback> feedback) noexcept override {
-    bus_->receive(feedback);
+  [[nodiscard]] bool receive(std::span<DriveFeedback> feedback) noexcept override {
+    const bool works = bus_->receive(feedback);
     feedback[0].torque_permille = static_cast<std::int16_t>(-feedback[0].torque_permille);
+    return works;
   }
   [[nodiscard]] bool send(std::span<const DriveCommand> commands) noexcept override {
     std::copy(commands.begin(), commands.end(), turned_.begin());

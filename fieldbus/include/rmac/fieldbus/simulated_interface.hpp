@@ -40,7 +40,7 @@ class SimulatedInterface : public DigitalControlInterface {
   [[nodiscard]] std::size_t axis_count() const noexcept override { return drives_.size(); }
   [[nodiscard]] Expected<> start() override;
   void stop() noexcept override;
-  void receive(std::span<DriveFeedback> feedback) noexcept override;
+  [[nodiscard]] bool receive(std::span<DriveFeedback> feedback) noexcept override;
   [[nodiscard]] bool send(std::span<const DriveCommand> commands) noexcept override;
   [[nodiscard]] std::uint32_t input_bits(std::size_t axis) const noexcept override {
     constexpr std::uint32_t kLimitSwitches = 3;

@@ -7,6 +7,10 @@ namespace rmac {
 
 namespace {
 
+void fail(std::size_t bus, FaultSink& faults) noexcept {
+  faults.raise({ServoFault::Kind::BusFailure, ServoFault::Part::Bus, static_cast<std::uint32_t>(bus), 0, 0});
+}
+
 std::int64_t nanoseconds_since(std::chrono::steady_clock::time_point begun) noexcept {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now() - begun).count();
 }
@@ -34,7 +38,9 @@ std::uint64_t Exchange::receive(std::uint64_t outputs, FaultSink& faults) noexce
   if (parts_.io && !parts_.io->exchange(outputs, inputs)) {
     faults.raise({ServoFault::Kind::IoFailure, ServoFault::Part::Io, 0, 0, 0});
   }
-  for (const auto& bus : buses_) bus->interface->receive(bus->feedback);
+  for (std::size_t b = 0; b < buses_.size(); ++b) {
+    if (!buses_[b]->interface->receive(buses_[b]->feedback)) fail(b, faults);
+  }
   took_ns_ = nanoseconds_since(begun);
   for (const ServoDriveInput& input : parts_.drive_inputs) {
     const ServoActuator& teller = parts_.actuators[input.actuator];
@@ -47,8 +53,7 @@ std::uint64_t Exchange::receive(std::uint64_t outputs, FaultSink& faults) noexce
 void Exchange::send(FaultSink& faults) noexcept {
   const auto begun = std::chrono::steady_clock::now();
   for (std::size_t b = 0; b < buses_.size(); ++b) {
-    if (buses_[b]->interface->send(buses_[b]->commands)) continue;
-    faults.raise({ServoFault::Kind::BusFailure, ServoFault::Part::Bus, static_cast<std::uint32_t>(b), 0, 0});
+    if (!buses_[b]->interface->send(buses_[b]->commands)) fail(b, faults);
   }
   took_ns_ += nanoseconds_since(begun);
 }

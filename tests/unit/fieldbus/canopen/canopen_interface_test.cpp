@@ -26,7 +26,7 @@ class Paced final : public DigitalControlInterface {
     });
   }
   void stop() noexcept override { bus_.stop(); }
-  void receive(std::span<DriveFeedback> feedback) noexcept override { bus_.receive(feedback); }
+  [[nodiscard]] bool receive(std::span<DriveFeedback> feedback) noexcept override { return bus_.receive(feedback); }
   bool send(std::span<const DriveCommand> commands) noexcept override {
     const bool sound = bus_.send(commands);
     wire_.pass(milliseconds(1));

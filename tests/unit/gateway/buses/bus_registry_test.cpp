@@ -24,7 +24,7 @@ class LoggedBus final : public DigitalControlInterface, public fieldbus::BusRepo
     return name_ == "broken" ? Expected<>(failure(MinorCode::ResponseTimeout, "no drive answers")) : Expected<>();
   }
   void stop() noexcept override { log_.push_back("stop " + name_); }
-  void receive(std::span<DriveFeedback>) noexcept override {}
+  [[nodiscard]] bool receive(std::span<DriveFeedback>) noexcept override { return true; }
   bool send(std::span<const DriveCommand>) noexcept override { return true; }
   fieldbus::BusReport report() const override {
     fieldbus::BusReport told;

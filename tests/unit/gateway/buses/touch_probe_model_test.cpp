@@ -162,7 +162,6 @@ TEST_F(Touching, SaysWhenWithinTheCycleItBegan) {
     exchange();
     exchange();
     put(0, 0, 12 + share - 1);
-    exchange();
     EXPECT_EQ(exchange() & kTouch, kTouch);
     // From rest to rest in a cycle: 3 u² - 2 u³ of the way when it touches.
     const double on_for = probe_->on_for_s(2) / kPeriod_s, u = 1 - on_for;

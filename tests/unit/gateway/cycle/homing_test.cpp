@@ -17,8 +17,8 @@ class HomingBus final : public fieldbus::SimulatedInterface {
 
   HomingBus() : SimulatedInterface(fieldbus::default_simulated_axes(), 0.001), drives_(axis_count()) {}
 
-  void receive(std::span<DriveFeedback> feedback) noexcept override {
-    SimulatedInterface::receive(feedback);
+  [[nodiscard]] bool receive(std::span<DriveFeedback> feedback) noexcept override {
+    const bool sound = SimulatedInterface::receive(feedback);
     for (std::size_t i = 0; i < drives_.size(); ++i) {
       Drive& drive = drives_[i];
       const bool homes = drive.told.mode == DriveMode::Homing;
@@ -35,6 +35,7 @@ class HomingBus final : public fieldbus::SimulatedInterface {
         if (looks) feedback[i].statusword |= statusword::kHomingAttained;
       }
     }
+    return sound;
   }
   bool send(std::span<const DriveCommand> commands) noexcept override {
     std::vector<DriveCommand> forwarded(commands.begin(), commands.end());

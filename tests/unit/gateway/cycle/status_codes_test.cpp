@@ -15,10 +15,11 @@ namespace {
 class DroppingBus final : public fieldbus::SimulatedInterface {
  public:
   DroppingBus() : SimulatedInterface(fieldbus::default_simulated_axes(), 0.001) {}
-  void receive(std::span<DriveFeedback> feedback) noexcept override {
+  [[nodiscard]] bool receive(std::span<DriveFeedback> feedback) noexcept override {
     constexpr std::uint16_t kSwitchedOn = 0x23;
-    SimulatedInterface::receive(feedback);
+    const bool works = SimulatedInterface::receive(feedback);
     if (dropped) feedback[0].statusword = kSwitchedOn;
+    return works;
   }
   std::atomic<bool> dropped{false};
 };

@@ -76,7 +76,7 @@ class TellingBus final : public DigitalControlInterface, public fieldbus::Silenc
   std::size_t axis_count() const noexcept override { return 3; }
   Expected<> start() override { return {}; }
   void stop() noexcept override {}
-  void receive(std::span<DriveFeedback>) noexcept override {}
+  [[nodiscard]] bool receive(std::span<DriveFeedback>) noexcept override { return true; }
   bool send(std::span<const DriveCommand>) noexcept override { return true; }
   std::optional<std::string> silence_text(std::size_t axis) const override {
     if (axis != 1) return {};

@@ -30,9 +30,9 @@ class BusWithAFault final : public fieldbus::SimulatedInterface {
       : SimulatedInterface(fieldbus::default_simulated_axes(), 0.001), error_code_(error_code), stays_(stays) {
     trip(1, error_code);
   }
-  void receive(std::span<DriveFeedback> feedback) noexcept override {
+  [[nodiscard]] bool receive(std::span<DriveFeedback> feedback) noexcept override {
     if (stays_) trip(1, error_code_);
-    SimulatedInterface::receive(feedback);
+    return SimulatedInterface::receive(feedback);
   }
 
  private:

@@ -95,6 +95,15 @@ TEST_F(ServoFaultTest, BusFailureStopsAll) {
   fake->works = false;
   cycle();
   expect_fault(ServoFault::Kind::BusFailure, ServoFault::Part::Bus, 0);
+  expect_all_quick_stopped();
+}
+
+TEST_F(ServoFaultTest, BusThatSendsNoMoreStopsAllFromTheNextCycleOn) {
+  build();
+  engage();
+  fake->sends = false;
+  cycle();
+  expect_fault(ServoFault::Kind::BusFailure, ServoFault::Part::Bus, 0);
   cycle();
   expect_all_quick_stopped();
 }

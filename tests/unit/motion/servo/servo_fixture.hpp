@@ -145,8 +145,9 @@ class FakeBus : public DigitalControlInterface {
   [[nodiscard]] std::size_t axis_count() const noexcept override { return drives.size(); }
   [[nodiscard]] Expected<> start() override { return {}; }
   void stop() noexcept override {}
-  void receive(std::span<DriveFeedback> feedback) noexcept override {
+  [[nodiscard]] bool receive(std::span<DriveFeedback> feedback) noexcept override {
     for (std::size_t i = 0; i < drives.size(); ++i) feedback[i] = drives[i].words;
+    return works;
   }
   [[nodiscard]] bool send(std::span<const DriveCommand> commands) noexcept override {
     ++exchanges;
@@ -154,7 +155,7 @@ class FakeBus : public DigitalControlInterface {
       drives[i].command = commands[i];
       if (!drives[i].stuck) drives[i].words.statusword = next(drives[i].words.statusword, commands[i].controlword);
     }
-    return works;
+    return works && sends;
   }
   [[nodiscard]] int answer_delay(std::size_t axis) const noexcept override { return delays.at(axis); }
   [[nodiscard]] bool tells_torque(std::size_t axis) const noexcept override { return (torque_told >> axis & 1U) != 0; }
@@ -167,7 +168,7 @@ class FakeBus : public DigitalControlInterface {
     bool stuck = false;
   };
   std::vector<Drive> drives;
-  bool works = true;
+  bool works = true, sends = true;
   bool torque_offset = false;  ///< they take one beside what they follow
   std::array<int, kMaxJoints> delays{};
   std::uint32_t torque_told = 0;  ///< bit i: the answers of axis i hold its torque

@@ -31,7 +31,7 @@ class SpindleInterface final : public DigitalControlInterface,
   [[nodiscard]] Expected<> start() override;
   void stop() noexcept override;
   /// Always true: the line's troubles are its drives', which go offline.
-  void receive(std::span<DriveFeedback> feedback) noexcept override;
+  [[nodiscard]] bool receive(std::span<DriveFeedback> feedback) noexcept override;
   [[nodiscard]] bool send(std::span<const DriveCommand> commands) noexcept override;
   [[nodiscard]] DriveMode mode(std::size_t /*axis*/) const noexcept override { return DriveMode::ProfileVelocity; }
   [[nodiscard]] std::string fault_text(std::size_t axis, std::uint16_t error_code) const override;

@@ -90,15 +90,16 @@ class DigitalControlInterface {
   [[nodiscard]] virtual Expected<> start() = 0;
   /// Leaves every drive disabled. Off the cycle; cannot fail.
   virtual void stop() noexcept = 0;
-  /// What the drives tell, axis_count() of them: once a cycle, at its begin. Never waits for them. Real-time safe.
-  virtual void receive(std::span<DriveFeedback> feedback) noexcept = 0;
+  /// What the drives tell, axis_count() of them: once a cycle, at its begin. Never waits for them. False when the bus
+  /// itself failed. Real-time safe.
+  [[nodiscard]] virtual bool receive(std::span<DriveFeedback> feedback) noexcept = 0;
   /// What they are to do, which was made of what `receive` told in the same cycle; axis_count() of them, once a cycle.
-  /// False when the bus itself failed, whether in receiving or in sending. Real-time safe.
+  /// False when the bus itself failed. Real-time safe.
   [[nodiscard]] virtual bool send(std::span<const DriveCommand> commands) noexcept = 0;
   /// Both, for who makes its commands of what was told a cycle before.
   [[nodiscard]] bool exchange(std::span<const DriveCommand> commands, std::span<DriveFeedback> feedback) noexcept {
-    receive(feedback);
-    return send(commands);
+    const bool received = receive(feedback);
+    return send(commands) && received;
   }
   /// The mode in which this axis, of a joint or a spindle, follows its setpoints. Before or after start.
   [[nodiscard]] virtual DriveMode mode(std::size_t /*axis*/) const noexcept { return DriveMode::CyclicSyncTorque; }

@@ -30,7 +30,7 @@ class MasterOverVirtualDrives : public testing::Test, public DigitalControlInter
     return master_->start().map([this] { EXPECT_TRUE(exchange(commands_, feedback_)); });
   }
   void stop() noexcept override { master_->stop(); }
-  void receive(std::span<DriveFeedback> feedback) noexcept override { master_->receive(feedback); }
+  [[nodiscard]] bool receive(std::span<DriveFeedback> feedback) noexcept override { return master_->receive(feedback); }
   bool send(std::span<const DriveCommand> commands) noexcept override {
     const bool sound = master_->send(commands);
     wire_.pass(milliseconds(1));

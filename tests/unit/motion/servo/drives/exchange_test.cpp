@@ -82,10 +82,14 @@ TEST_F(Exchanged, WordsThatAnotherLoopLeftStandForItsOwnDrives) {
 
 TEST_F(Exchanged, BusThatFailsIsNamedByItsPlace) {
   Exchange exchange(parts_);
-  fake_other_->works = false;
+  const auto failed = testing::ElementsAre(is_fault(ServoFault::Kind::BusFailure, ServoFault::Part::Bus, 1, 0, 0));
+  fake_other_->sends = false;
   run(exchange);
-  EXPECT_THAT(faults_.raised,
-              testing::ElementsAre(is_fault(ServoFault::Kind::BusFailure, ServoFault::Part::Bus, 1, 0, 0)));
+  EXPECT_THAT(faults_.raised, failed);
+  faults_.raised.clear();
+  fake_other_->works = false;
+  (void)exchange.receive(0, faults_);
+  EXPECT_THAT(faults_.raised, failed);
 }
 
 TEST_F(Exchanged, IoThatFailsIsAFaultOfItsOwn) {
