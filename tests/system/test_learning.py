@@ -94,11 +94,8 @@ class Learning(unittest.TestCase):
             self.assertLessEqual(abs(after - before), 1.001 * 5000 * PERIOD)
 
     def test_axes_that_bend_stick_and_cog_teach_too(self):
-        """As the tree has them, whose loops know most of it already: all but a twentieth of their friction."""
+        """As the tree has them, whose loops know most of it already."""
         self.device.write_text(self.honest)
-        with device_of(self.appliance) as device:
-            for joint in device["Joints"]:
-                joint["ServoControlLaw"]["Parameters"]["friction"] *= 0.95
         self.assertEqual(self.appliance.rmac("load", "DMACXYZ").returncode, 0)
         told = self.learn(passes=5)
         before, after = told["passes"][0]["rms"], told["passes"][-1]["rms"]
