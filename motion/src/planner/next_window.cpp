@@ -15,9 +15,7 @@ constexpr double kShortest_mm = 1.0;
 /// The last ramps brake for an end that the next window takes away: they are planned again.
 constexpr double kRampsPlannedAgain = 2;
 
-/// Nodes of the geometry after which a window ends, unless it is still shorter than these ramps from the speed at its
-/// begin: a law's grid has about three intervals to each.
-constexpr std::size_t kMostNodes = 300;
+/// However many nodes a window has, it is not shorter than these ramps from the speed at its begin.
 constexpr double kRampsAtLeast = 4;
 
 /// Bounds of acceleration and jerk in which the weakest joint rules.
@@ -33,10 +31,10 @@ struct Ramp {
 };
 
 /// Counts the nodes of a segment behind s; the place of the one that is too many, if that is there.
-double place_of_many(const LaidPath& path, std::size_t segment, double s, std::size_t& nodes) {
+double place_of_many(const LaidPath& path, std::size_t segment, double s, std::size_t most, std::size_t& nodes) {
   for (const double local : path.segment(segment)->nodes()) {
     const double place = path.start(segment) + local;
-    if (place > s && ++nodes >= kMostNodes) return place;
+    if (place > s && ++nodes >= most) return place;
   }
   return std::numeric_limits<double>::infinity();
 }
@@ -44,7 +42,7 @@ double place_of_many(const LaidPath& path, std::size_t segment, double s, std::s
 }  // namespace
 
 WindowEnd next_window_end(LaidPath& path, const std::vector<JointLimits>& joints, const PathState& from, double ramps,
-                          double factor, std::optional<double> limit_s) {
+                          double factor, std::optional<double> limit_s, std::size_t most_nodes) {
   const double s = from.s;
   Ramp weakest;
   double fastest = 0;
@@ -69,8 +67,8 @@ WindowEnd next_window_end(LaidPath& path, const std::vector<JointLimits>& joints
     }
     v = std::max(v, std::min(path.segment(i)->demand().feed_mm_s * std::max(factor, 1.0), 2 * fastest));
     reach = std::max(reach, ramps * weakest.length(v));
-    if (nodes < kMostNodes) s_many = place_of_many(path, i, std::max(s, least), nodes);
-    const bool enough = path.end(i) - s > 2 * reach || nodes >= kMostNodes;
+    if (nodes < most_nodes) s_many = place_of_many(path, i, std::max(s, least), most_nodes, nodes);
+    const bool enough = path.end(i) - s > 2 * reach || nodes >= most_nodes;
     // Whether the path goes on without rest is known once its next segment is there.
     if (i + 1 == path.size() && !path.rest_after(i) && !enough) supply();
     if (path.rest_after(i) || enough) found = WindowEnd{path.end(i), path.rest_after(i)};

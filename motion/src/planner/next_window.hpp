@@ -14,6 +14,12 @@ namespace rmac {
 inline constexpr double kRampsAtOnce = 5;
 inline constexpr double kRampsAhead = 16;
 
+/// Nodes of the geometry after which a window ends, unless it is still shorter than a few ramps from the speed at its
+/// begin: a law's grid has about three intervals to each. More would hold the planner up; what answers an override has
+/// few.
+inline constexpr std::size_t kMostNodes = 300;
+inline constexpr std::size_t kNodesAtOnce = 20;
+
 /// Where a window ends, and whether the path demands rest there.
 struct WindowEnd {
   double s = 0;
@@ -23,11 +29,12 @@ struct WindowEnd {
 };
 
 /// Where the window that begins at s must or may end: at a demanded rest, at `limit_s`, at the end of the path, or
-/// where it is long enough, which takes `ramps` ramps to full speed, or where the path bends so much that a longer one
-/// would hold the planner up. Lays path until it is known, or the path has taken as much work as a step may do. `from`:
-/// the state in which it begins; `factor`: the override.
+/// where it is long enough, which takes `ramps` ramps to full speed, or where the path bends so much that it would have
+/// more than `most_nodes` nodes. Lays path until it is known, or the path has taken as much work as a step may do.
+/// `from`: the state in which it begins; `factor`: the override.
 [[nodiscard]] WindowEnd next_window_end(LaidPath& path, const std::vector<JointLimits>& joints, const PathState& from,
-                                        double ramps, double factor, std::optional<double> limit_s);
+                                        double ramps, double factor, std::optional<double> limit_s,
+                                        std::size_t most_nodes = kMostNodes);
 
 /// Work that one step of the planner may do on a law (`LawProblem::work_left`).
 inline constexpr long kMostWorkOnLaw = 80'000;

@@ -149,7 +149,10 @@ void Planner::Impl::command(PathCommand command) {
 
 void Planner::Impl::set_override(double percent) {
   const double wish = std::clamp(percent, 0.0, 200.0) / 100;
-  if (wish != factor) attempt.forget();
+  if (wish != factor) {
+    attempt.forget();
+    law_attempt = 0;
+  }
   factor = wish;
 }
 

@@ -13,8 +13,15 @@
 #include "planner/published_plans.hpp"
 #include "planner/route.hpp"
 #include "rmac/motion/planner.hpp"
+#include "time_law/window.hpp"
 
 namespace rmac {
+
+/// How a plan is left for a window: as soon as can be, or so many cycles later; `Window::braking`.
+struct Leaving {
+  int later = 0;
+  double braking = kBraking;
+};
 
 /// What the planner knows and does, a step at a time: which task is next (planner.cpp), the windows of motion
 /// (planner_windows.cpp), and what takes motion back, holds and lowered overrides (planner_stops.cpp). What answers
@@ -28,7 +35,7 @@ struct Planner::Impl {
   PublishedPlans plans;
   PlanningTime planning_time;
   FailedAttempt attempt;
-  std::size_t law_attempt = 0;  ///< at the law of a window, of several
+  std::size_t law_attempt = 0;  ///< at the law of a window or of an override, of several
   bool stop_came_late = false;  ///< of the stops tried since the last command: the next is left the time it takes
   PathCommand wanted = PathCommand::Stop;
   double factor = 1;     ///< the override
@@ -66,13 +73,13 @@ struct Planner::Impl {
   /// The place on `forward` where the machine stands at rest, or is to go on.
   [[nodiscard]] double place_s() const { return route.on_forward(base_end_s()); }
 
-  [[nodiscard]] WindowEnd window_end(const PathState& from, double ramps);
+  [[nodiscard]] WindowEnd window_end(const PathState& from, double ramps, std::size_t most_nodes = kMostNodes);
   bool start_from_rest(const ServoProgress& progress);
   /// Adds the next window to the plan that is followed: behind its end where the path demands rest there, else from its
   /// commit point.
   bool extend(const ServoProgress& progress);
-  /// Leaves the plan as soon as can be, for the window behind it or (s_stop given) to stop there.
-  bool divert(const ServoProgress& progress, std::optional<double> s_stop);
+  /// Leaves the plan for the window behind it or (s_stop given) to stop there.
+  bool divert(const ServoProgress& progress, std::optional<double> s_stop, const Leaving& leaving);
   bool publish(std::unique_ptr<Plan> plan, const WindowEnd& end, double window_begin, const Purpose& purpose = {});
   /// The law that was to begin a window was not found; there may be others to be tried, one a step.
   bool next_attempt(const ServoProgress& progress, std::size_t attempts);
@@ -82,8 +89,10 @@ struct Planner::Impl {
   /// often a better one is looked for afterwards, unless this one brakes as hard as can be from its begin on and is
   /// asked to stop.
   bool brake(const ServoProgress& progress, std::int64_t lead, double rest, Purpose purpose);
-  /// A lowered override is answered by braking at once, from where a law for it goes on. A raised one is no hurry: what
-  /// is planned keeps it; but where no law is found again and again, there is one from rest.
+  /// A lowered override is answered by braking at once, from where a law for it goes on. Where that finds no law, as
+  /// for a raised one, the plan is left for a window: at once, or later, which is tried one a step; one that leaves
+  /// later takes over as soon, and is bettered until it does. Where nothing is found again and again, there is a law
+  /// from rest.
   bool follow_override(const ServoProgress& progress);
   /// The next demanded rest on a plan that is followed, or its end, behind where it is in a cycle.
   [[nodiscard]] double rest_behind(const PublishedPlan& p, std::int64_t cycle) const;

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
+#include <iterator>
 
+#include "gives_way.hpp"
 #include "planner/planner_impl.hpp"
 #include "planner/stop_distance.hpp"
 
@@ -12,9 +14,17 @@ namespace {
 constexpr std::array<double, 8> kStretches{1.02, 1.08, 1.2, 1.4, 1.8, 2.5, 4.0, 7.0};
 constexpr int kStopTries = 400;
 constexpr double kWorthIt = 0.05;
-/// And for an override. One that is lowered is tried again in the next cycle.
+/// And for an override, which is tried again in the next cycle.
 constexpr int kOverrideTries = 3;
 constexpr std::int64_t kUrgent = 1;
+/// How a plan is left for an override, in the order in which it is tried. In near-cusps the state lies at the edge of
+/// the limits, and a little later it does not; nor is there room there to brake for a feed as fast as elsewhere.
+constexpr double kHardlyBraking = 0.06;
+constexpr Leaving kLeavings[] = {{0},  {2, kHardlyBraking},  {5},  {8, kHardlyBraking},  {12}, {16, kHardlyBraking},
+                                 {24}, {32, kHardlyBraking}, {48}, {64, kHardlyBraking}, {96}, {128, kHardlyBraking}};
+/// What leaves later is followed by tries to leave sooner, a cycle each, until its plan is there; no more than these,
+/// for nothing is added to it meanwhile.
+constexpr int kTakenOver = 2, kMostSoonerTries = 30;
 /// Braking for an override begins so many cycles later: mostly the law that is looked for meanwhile comes first, and
 /// finds its way more easily from the plan that is followed than from one that brakes.
 constexpr int kBeforeBraking = 6;
@@ -39,15 +49,32 @@ bool Planner::Impl::follow_override(const ServoProgress& progress) {
   PublishedPlan& p = *plans.base();
   int& tries = p.purpose.better_tries;
   if (tries == 0) {
+    // What neither feed slows down is what would be found for the other, too, where nothing is planned beyond its end.
+    const bool final = p.hard_end || p.end_s() >= path().end() - kSamePlace;
+    const FeedRule slower = feed(std::min(factor, p.override_factor));
+    if (final && !p.slowed_by(slower, path().view(), now_s(p, progress.cycle))) {
+      p.override_factor = factor;
+      return false;
+    }
     const double rest = rest_behind(p, p.followed_from(progress.cycle + PlanningTime::kShortestLead));
     const bool hurry = factor < p.override_factor || attempt.was_based_on(p.plan->id);
     if (hurry && brake(progress, PlanningTime::kShortestLead, rest, {false, kOverrideTries})) return true;
     tries = kOverrideTries;
     if (hurry) return false;
   }
-  if (divert(progress, std::nullopt)) return true;
+  const std::size_t ways = factor == p.override_factor ? 1 : std::size(kLeavings);
+  law_attempt = std::min(law_attempt, ways - 1);
+  const Leaving& leaving = kLeavings[law_attempt];
+  if (divert(progress, std::nullopt, leaving)) {
+    // Until it leaves, one may be found that leaves sooner.
+    plans.base()->purpose.better_tries = std::clamp(leaving.later - kTakenOver, 0, kMostSoonerTries);
+    return true;
+  }
+  if (gives_way()) return false;
+  if (++law_attempt < ways) return false;
+  law_attempt = 0;
   --tries;
-  return no_plan(progress, factor < p.override_factor ? kUrgent : FailedAttempt::kRetryAfter);
+  return no_plan(progress, kUrgent);
 }
 
 double Planner::Impl::rest_behind(const PublishedPlan& p, std::int64_t cycle) const {
@@ -93,7 +120,7 @@ bool Planner::Impl::stop_sooner(const ServoProgress& progress) {
   --tries;
   if (stretch == 0 && brake(progress, planning_time.lead(), rest_behind(p, cycle), {true, tries})) return true;
   if (from.v > 0 && s_end < base_end_s() - kWorthIt * (base_end_s() - from.s)) {
-    if (divert(progress, s_end)) return true;
+    if (divert(progress, s_end, {})) return true;
     if (stretch + 1 < kStretches.size()) return false;
   } else {
     tries -= static_cast<int>(kStretches.size() - 1 - stretch);  // the longer ones are no better

@@ -16,9 +16,9 @@ constexpr double kRampsFaster = 2.5;
 
 }  // namespace
 
-WindowEnd Planner::Impl::window_end(const PathState& from, double ramps) {
+WindowEnd Planner::Impl::window_end(const PathState& from, double ramps, std::size_t most_nodes) {
   const auto limit = wanted == PathCommand::RunOne && !route.on_detour() ? std::optional(limit_s) : std::nullopt;
-  const WindowEnd end = next_window_end(path(), model.joints, from, ramps, factor, limit);
+  const WindowEnd end = next_window_end(path(), model.joints, from, ramps, factor, limit, most_nodes);
   if (end.in_work) planning_time.withdraw();
   return end;
 }
@@ -83,18 +83,20 @@ bool Planner::Impl::extend(const ServoProgress& progress) {
   return publish(go_on_as(p, now, t_from, *law, model.period_s), end, from.s);
 }
 
-bool Planner::Impl::divert(const ServoProgress& progress, std::optional<double> s_stop) {
+bool Planner::Impl::divert(const ServoProgress& progress, std::optional<double> s_stop, const Leaving& leaving) {
   const PublishedPlan& p = *base();
   const std::int64_t cycle = p.followed_from(progress.cycle + planning_time.lead());
-  const double t = now_s(p, cycle);
+  const double t = now_s(p, cycle + leaving.later);
   const PathState from = p.state_at(t);
+  if (!(from.v > 0)) return false;
   const double ramps = factor > p.override_factor ? kRampsFaster : kRampsAtOnce;
-  const WindowEnd end = s_stop ? WindowEnd{*s_stop, false} : window_end(from, ramps);
+  const WindowEnd end = s_stop ? WindowEnd{*s_stop, false} : window_end(from, ramps, kNodesAtOnce);
   const double allowed = s_stop ? std::max(factor, p.override_factor) : factor;
   const bool same_feed = s_stop.has_value() || p.override_factor == factor;
   long work_left = kMostWorkOnLaw;
-  auto law =
-      plan_window(path().view(), model.joints, {from, end.s, feed(allowed), &p.law, same_feed, false, &work_left});
+  Window window{from, end.s, feed(allowed), &p.law, same_feed, false, &work_left};
+  window.braking = leaving.braking;
+  auto law = plan_window(path().view(), model.joints, window);
   if (!law) return false;
   return publish(go_on_as(p, cycle, t, *law, model.period_s), end, from.s, {s_stop.has_value(), 0});
 }

@@ -35,6 +35,15 @@ double PublishedPlan::time_at(double s) const {
   return piece == law.end() ? plan->end_time_s : piece->t0;
 }
 
+bool PublishedPlan::slowed_by(const FeedRule& feed, const PathView& path, double t) const {
+  constexpr double kWellBelow = 0.98;
+  return std::ranges::any_of(law, [&](const LawPiece& piece) {
+    const double fastest = std::max(piece.start.v, piece.at(piece.duration).v);
+    return piece.t0 + piece.duration >= t &&
+           fastest >= kWellBelow * feed.bound(path.segment(path.find(piece.start.s, 1)));
+  });
+}
+
 void PublishedPlan::move_origin(double distance_mm) {
   for (LawPiece& piece : law) piece.start.s -= distance_mm;
 }

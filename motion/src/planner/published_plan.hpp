@@ -7,6 +7,7 @@
 
 #include "planner/laid_path.hpp"
 #include "rmac/motion/plan.hpp"
+#include "time_law/speed_bound.hpp"
 
 namespace rmac {
 
@@ -35,6 +36,8 @@ struct PublishedPlan {
   [[nodiscard]] PathState state_at(double t) const;
   /// The time at which the first piece of law begins at or behind path length s; else the end.
   [[nodiscard]] double time_at(double s) const;
+  /// From a time on it comes so near to this feed that it may be slower for its sake.
+  [[nodiscard]] bool slowed_by(const FeedRule& feed, const PathView& path, double t) const;
   /// Law pieces between two times, with times counted from the first; the first piece may begin before.
   [[nodiscard]] std::vector<LawPiece> pieces_between(double t_begin, double t_end) const;
   /// Counts path length from a place `distance_mm` further along, as LaidPath::move_origin() does.

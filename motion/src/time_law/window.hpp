@@ -10,6 +10,9 @@
 
 namespace rmac {
 
+/// The part of what the joints allow with which a window slows down that begins too fast for its feed.
+inline constexpr double kBraking = 0.25;
+
 /// A stretch of path to be given a time law: from a state to rest at `s_end`. The path between is smooth to the second
 /// derivative.
 struct Window {
@@ -21,6 +24,7 @@ struct Window {
   bool same_feed = false;     ///< `before` was made for this feed: where it is still faster, this law may be so too
   bool patient = false;       ///< there is time to look further for a law
   long* work_left = nullptr;  ///< `LawProblem::work_left`
+  double braking = kBraking;  ///< less where the path's bends leave hardly any braking
 
   [[nodiscard]] bool from_rest() const noexcept { return begin.v == 0 && begin.a == 0; }
 };

@@ -102,11 +102,11 @@ AlongIntervals along_intervals(const LawProblem& problem, const std::vector<LawP
   return along;
 }
 
-/// Lets the feed give way as far as gentle braking needs, but no further than the joints' speeds, nor than the law
-/// before went; where that brakes already, for the same feed, than it had come until there and than the feed that was
-/// programmed, up to a move that is slower.
+/// Lets the feed give way as far as gentle braking (`Window::braking`) needs, but no further than the joints' speeds,
+/// nor than the law before went; where that brakes already, for the same feed, than it had come until there and than
+/// the feed that was programmed, up to a move that is slower.
 void yield_to_begin(LawProblem& problem, const AlongIntervals& before, const Window& window) {
-  const auto [q, a] = braking_from_begin(problem, 0.25);
+  const auto [q, a] = braking_from_begin(problem, window.braking);
   const double lowered = std::min(window.feed.override_factor, 1.0);
   double came_to = problem.begin.v * problem.begin.v;
   bool slower = false;

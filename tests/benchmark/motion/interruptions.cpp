@@ -16,7 +16,7 @@ namespace {
 constexpr int kInstantsOfSpline = 10;
 
 struct Outcome {
-  int instants = 0, unfinished = 0, holds = 0, kept = 0;
+  int instants = 0, unfinished = 0, holds = 0, kept = 0, overrides_kept = 0;
   double worst = 0, off_nm = 0;
   std::vector<double> reaction_cycles, visible_cycles, stop_ratio, planning_ms;
   std::vector<double> lowered_cycles, raised_cycles, override_ms, lowered_visible, raised_visible;
@@ -109,6 +109,8 @@ class Case {
         while (keeps(*before) && drive_.setpoint().feed_mm_s > 0) drive_.cycle();
         (lowered ? outcome_.lowered_visible : outcome_.raised_visible)
             .push_back(static_cast<double>(drive_.now() - asked));
+      } else {
+        ++outcome_.overrides_kept;
       }
     }
     if (percent > 0) return;
@@ -214,6 +216,8 @@ void interruption_rows(Figures& figures, const Extent& extent) {
   };
   override_rows("lowered", outcome.lowered_cycles, outcome.lowered_visible);
   override_rows("raised", outcome.raised_cycles, outcome.raised_visible);
+  figures.inform("override_kept_plan", outcome.overrides_kept, "overrides",
+                 "in no row above: the plan in force came to rest");
   figures.inform("override_planning_p50", quantile(outcome.override_ms, 0.5), "ms", "CPU time");
   figures.inform("override_planning_p99", quantile(outcome.override_ms, 0.99), "ms", "CPU time");
   figures.at_most("override_planning_max", quantile(outcome.override_ms, 1), 1, "ms", "CPU time");

@@ -1,4 +1,5 @@
-// Every hold is answered within two cycles: the plan that is followed then ends at rest for it.
+// Every hold is answered within two cycles: the plan that is followed then ends at rest for it. So is every override:
+// another plan has taken over then.
 #include <gtest/gtest.h>
 
 #include "seeds.hpp"
@@ -77,6 +78,64 @@ TEST(Override, ThatIsLoweredIsFollowedWithinTwoCyclesAndTheLimits) {
   ASSERT_TRUE(bench.run());
   EXPECT_LE(bench.peaks().jerk, 1.001);
 }
+
+/// A spline through places at random, which bends sharply here and there.
+Nurbs winding(std::mt19937& random) {
+  const auto within = [&](double most) { return std::uniform_real_distribution(-most, most)(random); };
+  Nurbs nurbs;
+  nurbs.degree = 4;
+  nurbs.points.push_back({0, 0, 0});
+  for (int i = 1; i < 10; ++i) nurbs.points.push_back({within(40), within(40), within(10)});
+  nurbs.knots = {0, 0, 0, 0};
+  for (int i = 0; i <= 6; ++i) nurbs.knots.push_back(i);
+  nurbs.knots.insert(nurbs.knots.end(), 4, 6);
+  return nurbs;
+}
+
+class PromptOverride : public ::testing::TestWithParam<unsigned> {};
+
+// In sharp bends no law leaves the plan at once, as its state is at the limits on every side; one that leaves it later
+// takes over all the same. Where motion is about to end, slower than either feed, the plan is as good
+// as any, and nothing takes over.
+TEST_P(PromptOverride, HasAPlanThatTakesOverWithinTwoCycles) {
+  std::mt19937 random(GetParam());
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+  PlannerBench bench(mill(50000));
+  Move move;
+  move.id = 1;
+  move.feed_mm_s = uniform(20, 200);
+  move.geometry = NurbsGeometry{NurbsSpace::Tip, winding(random)};
+  ASSERT_TRUE(bench.queue(move));
+  bench.planner.command(PathCommand::Run);
+  double percent = 100;
+  int overrides = 0;
+  while (bench.planner.moves_left() > 0) {
+    for (int wait = std::uniform_int_distribution(20, 200)(random); wait > 0; --wait) bench.cycle();
+    if (!(bench.record.back().feed_mm_s > 1)) continue;
+    const bool lowered = uniform(0, 200) < percent;
+    percent = lowered ? uniform(1, percent) : uniform(percent, 200);
+    const std::uint64_t before = bench.progress().accepted_plan;
+    bench.planner.set_override(percent);
+    for (int cycle = 0; cycle < kCyclesOnPath; ++cycle) bench.cycle();
+    const bool answered = bench.progress().accepted_plan > before;
+    ++overrides;
+    if (!answered) {
+      ASSERT_LT(bench.record.back().feed_mm_s, percent / 100 * move.feed_mm_s) << "override " << overrides;
+      while (bench.progress().accepted_plan == before && bench.record.back().moving) bench.cycle();
+      ASSERT_EQ(bench.progress().accepted_plan, before) << "override " << overrides << ": " << percent;
+    }
+    percent = percent < 20 ? 100 : percent;  // or it takes long
+    bench.planner.set_override(percent);
+  }
+  EXPECT_GT(overrides, 0);
+  ASSERT_TRUE(bench.run());
+  const auto peaks = bench.peaks();
+  EXPECT_LE(peaks.velocity, 1.001);
+  EXPECT_LE(peaks.acceleration, 1.001);
+  EXPECT_LE(peaks.jerk, 1.001) << "in cycle " << peaks.jerk_cycle;
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, PromptOverride, test::seeds(80));
 
 }  // namespace
 }  // namespace rmac
