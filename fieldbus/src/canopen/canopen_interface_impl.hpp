@@ -85,7 +85,7 @@ struct CanopenInterface::Impl {
   std::chrono::nanoseconds next_heartbeat{0};
   std::chrono::nanoseconds next_time{0};
   std::size_t aside = 0;  ///< whose turn it is to send a frame beside those of the cycle
-  bool synced = true;  ///< SYNC went out where it goes ahead of the setpoints
+  bool synced = true;     ///< SYNC went out where it goes ahead of the setpoints
   bool running = false;
   bool fresh = false;  ///< no cycle since start
 };

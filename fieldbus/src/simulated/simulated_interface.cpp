@@ -27,6 +27,7 @@ SimulatedInterface::SimulatedInterface(const std::vector<SimulatedAxis>& axes, d
     modes_.push_back(servo != nullptr ? servo->mode : DriveMode::ProfileVelocity);
   }
   sent_.resize(axes.size());
+  heard_.resize(axes.size());
 }
 
 Expected<> SimulatedInterface::start() {
@@ -99,9 +100,10 @@ bool SimulatedInterface::receive(std::span<DriveFeedback> feedback) noexcept {
   move_surface();
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     act_on_injected(i);
+    heard_[i] = static_cast<char>(!bus_fails_now_ && !injected_[i].offline);
     std::visit(
         [&](const auto& drive) {
-          if (heard(i)) {
+          if (heard_[i] != 0) {
             feedback[i] = drive.feedback();
             read_sensor(i, feedback[i]);
           } else {
@@ -123,8 +125,8 @@ bool SimulatedInterface::send(std::span<const DriveCommand> commands) noexcept {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     std::visit(
         [&](auto& drive) {
-          if (!heard(i) && drive.power().operational()) drive.power().trip(kHeartbeatError);
-          drive.advance(heard(i) ? acts[i] : DriveCommand{}, period_s_);
+          if (heard_[i] == 0 && drive.power().operational()) drive.power().trip(kHeartbeatError);
+          drive.advance(heard_[i] != 0 ? acts[i] : DriveCommand{}, period_s_);
         },
         drives_[i]);
   }

@@ -151,7 +151,7 @@ void Planner::Impl::set_override(double percent) {
   const double wish = std::clamp(percent, 0.0, 200.0) / 100;
   if (wish != factor) {
     attempt.forget();
-    law_attempt = 0;
+    leaving_attempt = 0;
   }
   factor = wish;
 }

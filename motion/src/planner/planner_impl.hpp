@@ -35,8 +35,9 @@ struct Planner::Impl {
   PublishedPlans plans;
   PlanningTime planning_time;
   FailedAttempt attempt;
-  std::size_t law_attempt = 0;  ///< at the law of a window or of an override, of several
-  bool stop_came_late = false;  ///< of the stops tried since the last command: the next is left the time it takes
+  std::size_t law_attempt = 0;      ///< at the law of a window, of several
+  std::size_t leaving_attempt = 0;  ///< of the ways in which an override leaves its plan, the next one
+  bool stop_came_late = false;      ///< of the stops tried since the last command: the next is left the time it takes
   PathCommand wanted = PathCommand::Stop;
   double factor = 1;     ///< the override
   double limit_s = 0;    ///< path length at which RunOne ends

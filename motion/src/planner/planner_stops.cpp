@@ -63,16 +63,15 @@ bool Planner::Impl::follow_override(const ServoProgress& progress) {
     if (hurry) return false;
   }
   const std::size_t ways = factor == p.override_factor ? 1 : std::size(kLeavings);
-  law_attempt = std::min(law_attempt, ways - 1);
-  const Leaving& leaving = kLeavings[law_attempt];
-  if (divert(progress, std::nullopt, leaving)) {
+  const Leaving& way = kLeavings[std::min(leaving_attempt, ways - 1)];
+  if (divert(progress, std::nullopt, way)) {
     // Until it leaves, one may be found that leaves sooner.
-    plans.base()->purpose.better_tries = std::clamp(leaving.later - kTakenOver, 0, kMostSoonerTries);
+    plans.base()->purpose.better_tries = std::clamp(way.later - kTakenOver, 0, kMostSoonerTries);
     return true;
   }
   if (gives_way()) return false;
-  if (++law_attempt < ways) return false;
-  law_attempt = 0;
+  if (++leaving_attempt < ways) return false;
+  leaving_attempt = 0;
   --tries;
   return no_plan(progress, kUrgent);
 }

@@ -35,7 +35,7 @@ bool Planner::Impl::publish(std::unique_ptr<Plan> plan, const WindowEnd& end, do
   about.commit_t = commit_time(*plan, window_begin, end.planned_again);
   const LawPiece& last = plan->law.back();
   plan->limit = horizon_limit(route, {wanted, factor, limit_s, rest_follows}, last.at(last.duration).s, &about);
-  law_attempt = 0;
+  law_attempt = leaving_attempt = 0;
   return plans.publish(std::move(plan), std::move(about));
 }
 

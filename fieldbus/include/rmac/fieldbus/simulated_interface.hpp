@@ -102,13 +102,13 @@ class SimulatedInterface : public DigitalControlInterface {
     std::atomic<double> push_nm{0};
   };
   void act_on_injected(std::size_t axis) noexcept;
-  [[nodiscard]] bool heard(std::size_t axis) const noexcept { return !bus_fails_now_ && !injected_[axis].offline; }
   void move_surface() noexcept;
   void read_sensor(std::size_t axis, DriveFeedback& words) noexcept;
 
   std::vector<Drive> drives_;
   std::vector<DriveMode> modes_;
   std::vector<Injected> injected_;
+  std::vector<char> heard_;  ///< the axis, in this cycle
   std::atomic<bool> bus_failed_{false};
   bool bus_fails_now_ = false;  ///< in this cycle
   std::atomic<bool> sensor_lost_{false};

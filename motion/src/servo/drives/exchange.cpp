@@ -34,12 +34,12 @@ std::uint64_t Exchange::receive(std::uint64_t outputs, FaultSink& faults) noexce
     for (const auto& bus : buses_) std::fill(bus->commands.begin(), bus->commands.end(), DriveCommand{});
     fresh_ = false;
   }
+  for (std::size_t b = 0; b < buses_.size(); ++b) {
+    if (!buses_[b]->interface->receive(buses_[b]->feedback)) fail(b, faults);
+  }
   std::uint64_t inputs = 0;
   if (parts_.io && !parts_.io->exchange(outputs, inputs)) {
     faults.raise({ServoFault::Kind::IoFailure, ServoFault::Part::Io, 0, 0, 0});
-  }
-  for (std::size_t b = 0; b < buses_.size(); ++b) {
-    if (!buses_[b]->interface->receive(buses_[b]->feedback)) fail(b, faults);
   }
   took_ns_ = nanoseconds_since(begun);
   for (const ServoDriveInput& input : parts_.drive_inputs) {

@@ -15,7 +15,7 @@ class Exchange {
   /// `parts` must outlive it.
   explicit Exchange(const ServoLoopParts& parts);
 
-  /// The exchange with the I/O, then answers of all drives; the machine's inputs, those that drives tell among them.
+  /// Answers of all drives, then the exchange with the I/O; the machine's inputs, those that drives tell among them.
   [[nodiscard]] std::uint64_t receive(std::uint64_t outputs, FaultSink& faults) noexcept;
   /// What was made of them.
   void send(FaultSink& faults) noexcept;

@@ -24,7 +24,8 @@ constexpr double kLeastAcceleration = 1e-3;
 void OscillationWatch::take_effort(const OscillationSeen& seen) noexcept {
   std::rotate(commanded_.begin(), commanded_.end() - 1, commanded_.end());
   commanded_[0] = seen.effort;
-  last_effort_ = seen.effort_measured ? seen.effort : commanded_[static_cast<std::size_t>(std::max(1, seen.answer_delay))];
+  last_effort_ =
+      seen.effort_measured ? seen.effort : commanded_[static_cast<std::size_t>(std::max(1, seen.answer_delay))];
 }
 
 void OscillationWatch::begin() noexcept {

@@ -47,8 +47,8 @@ class CanopenInterface final : public DigitalControlInterface,
   [[nodiscard]] std::size_t axis_count() const noexcept override;
   [[nodiscard]] Expected<> start() override;
   void stop() noexcept override;
-  /// False when a frame of the cycle could not be sent or the bus is off; answers that came are taken all the same.
   [[nodiscard]] bool receive(std::span<DriveFeedback> feedback) noexcept override;
+  /// False when a frame of the cycle could not be sent or the bus is off.
   [[nodiscard]] bool send(std::span<const DriveCommand> commands) noexcept override;
   [[nodiscard]] DriveMode mode(std::size_t axis) const noexcept override;
   [[nodiscard]] bool tells_torque(std::size_t axis) const noexcept override;
