@@ -15,9 +15,9 @@ namespace {
 void tune_at_4_khz(nlohmann::json& device) {
   nlohmann::json& x = device["Joints"][0];
   x["Gains"] = {3490, 380000, 17.2};
-  x["Resonances"] = {{{"Frequency", 273.2}, {"Damping", 0.2}, {"Width", 0.5}}};
+  x["Resonances"] = nlohmann::json::array({{{"Frequency", 273.2}, {"Damping", 0.2}, {"Width", 0.5}}});
   x["LowPass"] = 0;
-  x["ServoControlLaw"]["Parameters"]["lead_s"] = 0.00088;
+  x["ServoControlLaw"]["Parameters"]["lead_s"] = {0.00088};
   device["Actuators"][0]["Cogging"]["Lead"] = 0.00054;
 }
 
