@@ -28,18 +28,20 @@ class TuneCreep(TuningTest):
 
     def test_the_tree_has_what_tune_finds(self):
         """Gains, filters, friction and cogging of its machines are those that anybody finds on their axes."""
-        for machine, number, travel in (("DMACXYZ", 0, "20"), ("SuginoXYZ", 0, "40"), ("TarusXYZCATwin", 0, "40")):
-            with self.subTest(machine), Appliance() as appliance, tempfile.TemporaryDirectory() as folder:
+        # A of the large machine is found a little otherwise each time; what the tree has is between.
+        for machine, number, travel, scatter in (("DMACXYZ", 0, "20", 0.06), ("SuginoXYZ", 0, "40", 0.06),
+                                                 ("TarusXYZCATwin", 0, "40", 0.06), ("TarusXYZCATwin", 4, "40", 0.15)):
+            with self.subTest(machine, joint=number), Appliance() as appliance, tempfile.TemporaryDirectory() as folder:
                 self.rmac(appliance, "load", machine)
                 words = ("tune", str(number), "--travel", travel, "--creep", "-o", str(pathlib.Path(folder, "tune.png")))
                 found = json.loads(self.rmac(appliance, "--json", *words))
                 device = json.loads(next(appliance.tree.glob(f"*/*/{machine}/device.json")).read_text())
-                self.has(device, number, found)
+                self.has(device, number, found, scatter)
 
-    def has(self, device, number, found):
+    def has(self, device, number, found, scatter):
         joint, creep = device["Joints"][number], found["creep"]
         for gain, own in zip(found["pid_gains"], joint["Gains"][:3], strict=True):
-            self.assertAlmostEqual(gain / own, 1, delta=0.06)
+            self.assertAlmostEqual(gain / own, 1, delta=scatter)
         (notch,), (own,) = found["proposed"]["filters"]["Resonances"], joint["Resonances"]
         self.assertAlmostEqual(notch["Frequency"], own["Frequency"], delta=3)
         self.assertEqual(found["proposed"]["filters"]["LowPass"], joint.get("LowPass", 0))

@@ -52,7 +52,7 @@ class OscillationWatch {
 
   TurnCounter turns_;
   TurnCounter path_turns_;                                ///< of the wanted acceleration
-  std::array<double, kMostAnswerDelay + 2> commanded_{};  ///< efforts of the last cycles, the latest first
+  std::array<double, kMostAnswerDelay + 1> commanded_{};  ///< efforts of the last cycles, the latest first
   double last_effort_ = 0, last_way_ = 0, last_position_ = 0;
   bool begun_ = false;  ///< there was a cycle before
 
