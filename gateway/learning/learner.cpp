@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "gateway/learning/zero_phase.hpp"
@@ -44,13 +45,17 @@ std::vector<double> Learner::offsets_of(const LearnedPath* path, const Pass& pas
 std::vector<double> Learner::improved(const Pass& pass, std::size_t joint) const {
   const auto& steps = pass.steps();
   const Joint& how = joints_[joint];
-  std::vector<double> offsets = offsets_of(next_.get(), pass, joint);
+  const std::vector<double> offsets = offsets_of(next_.get(), pass, joint);
   const auto lead = static_cast<std::size_t>(std::lround(options_.lead_s / options_.period_s));
+  // A joint that came out worse learns less of higher frequencies, and keeps what it knew of them.
+  const bool adds = how.bandwidth_hz < options_.bandwidth_hz;
+  std::vector<double> learned(steps.size());
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    const bool moves = pass.moves(joint, steps[i].cycle);
-    offsets[i] = moves ? offsets[i] + how.gain * pass.error(joint, steps[i].cycle + lead) : 0;
+    if (!pass.moves(joint, steps[i].cycle)) continue;
+    learned[i] = how.gain * pass.error(joint, steps[i].cycle + lead) + (adds ? 0 : offsets[i]);
   }
-  filter_zero_phase(offsets, how.bandwidth_hz, options_.period_s);
+  filter_zero_phase(learned, how.bandwidth_hz, options_.period_s);
+  if (adds) std::ranges::transform(learned, offsets, learned.begin(), std::plus());
   // An approach from elsewhere is not gone again.
   std::size_t first = 0;
   while (!pass.closed() && first < steps.size() && steps[first].move_id == steps.front().move_id) ++first;
@@ -58,10 +63,10 @@ std::vector<double> Learner::improved(const Pass& pass, std::size_t joint) const
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const double since = static_cast<double>(i) - static_cast<double>(first);
     const double left = static_cast<double>(steps.size() - 1 - i);
-    offsets[i] *= risen(since / fade) * risen(left / fade);
-    offsets[i] = std::clamp(offsets[i], -options_.largest[joint], options_.largest[joint]);
+    learned[i] *= risen(since / fade) * risen(left / fade);
+    learned[i] = std::clamp(learned[i], -options_.largest[joint], options_.largest[joint]);
   }
-  return offsets;
+  return learned;
 }
 
 void Learner::learn(const Pass& pass) {

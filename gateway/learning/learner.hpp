@@ -13,8 +13,8 @@ namespace rmac::gateway {
 /// IEEE Control Systems Magazine 26 (2006), 3, 96): the offsets of the next pass are Q(c + γ e(t + lead)), c those of
 /// this one, e its following error, Q a low-pass without a shift of phase. It converges, and each pass is better than
 /// the one before, where |Q (1 − γ z^lead T)| < 1 at all frequencies, T being the closed loop (equation 17). So Q ends
-/// about where the loop does. A joint that comes out worse all the same goes back to its best offsets, and learns half
-/// as fast up to half the frequency from then on.
+/// about where the loop does. A joint that comes out worse all the same goes back to its best offsets, and from
+/// then on adds to them half as fast and up to half the frequency.
 class Learner {
  public:
   struct Options {

@@ -25,8 +25,8 @@ std::string head_of(const Scene& scene) {
 
 }  // namespace
 
-void AnimationFeed::start(double every_cycles) noexcept {
-  pace_.start(every_cycles);
+void AnimationFeed::start(double every_cycles, std::int64_t since) noexcept {
+  pace_.start(every_cycles, since);
   told_ = -1;
 }
 

@@ -32,8 +32,8 @@ class AnimationFeed {
 
   [[nodiscard]] TopicPace& pace() noexcept { return pace_; }
   [[nodiscard]] const TopicPace& pace() const noexcept { return pace_; }
-  /// From the next sample on; what is missing of the machine is told anew.
-  void start(double every_cycles) noexcept;
+  /// From the first sample after cycle `since` on; what is missing of the machine is told anew.
+  void start(double every_cycles, std::int64_t since) noexcept;
 
   void take(const CycleSample& sample);
   [[nodiscard]] std::size_t bytes() const noexcept { return samples_.size(); }

@@ -117,7 +117,7 @@ tl::expected<void, RpcError> Session::subscribe(const std::vector<std::string>& 
                    MinorCode::UnsupportedOperation});
     }
   }
-  subscriptions_.start(topics, rate_hz);
+  subscriptions_.start(topics, rate_hz, context_.dispatcher.machine().sample().cycle);
   return {};
 }
 
@@ -126,7 +126,7 @@ void Session::unsubscribe(const std::vector<std::string>& topics) {
 }
 
 void Session::animate(bool on) {
-  subscriptions_.animate(on);
+  subscriptions_.animate(on, context_.dispatcher.machine().sample().cycle);
 }
 
 }  // namespace rmac::gateway

@@ -60,11 +60,11 @@ std::vector<TopicPace*> Subscriptions::paces(const std::vector<std::string>& top
   return result;
 }
 
-void Subscriptions::start(const std::vector<std::string>& topics, double rate_hz) {
+void Subscriptions::start(const std::vector<std::string>& topics, double rate_hz, std::int64_t since) {
   const double cycles = std::clamp(std::round(cycle_hz_ / rate_hz), 1.0, 1e12);
-  for (TopicPace* pace : paces(topics)) pace->start(cycles);
+  for (TopicPace* pace : paces(topics)) pace->start(cycles, since);
   if (names(topics, topic::kAnimation)) {
-    animation_.start(std::max(cycle_hz_ / rate_hz, 1.0));
+    animation_.start(std::max(cycle_hz_ / rate_hz, 1.0), since);
     animation_before_.reset();
   }
   if (names(topics, topic::kJoints)) joints_before_.reset();
@@ -79,7 +79,7 @@ void Subscriptions::stop(const std::vector<std::string>& topics) {
   if (all || names(topics, topic::kEvents)) events_ = false;
 }
 
-void Subscriptions::animate(bool on) {
+void Subscriptions::animate(bool on, std::int64_t since) {
   const auto raised = [on](TopicPace& pace, std::optional<double>& before, double every) -> std::optional<double> {
     if (!on) return std::exchange(before, std::nullopt);
     if (pace.on() && pace.every_cycles() <= every) return std::nullopt;
@@ -87,9 +87,9 @@ void Subscriptions::animate(bool on) {
     return every;
   };
   const double joints_every = std::max(std::round(cycle_hz_ / kAnimatedJointsHz), 1.0);
-  if (const auto every = raised(joints_, joints_before_, joints_every)) joints_.start(*every);
+  if (const auto every = raised(joints_, joints_before_, joints_every)) joints_.start(*every, since);
   const double animation_every = std::max(cycle_hz_ / kAnimationHz, 1.0);
-  if (const auto every = raised(animation_.pace(), animation_before_, animation_every)) animation_.start(*every);
+  if (const auto every = raised(animation_.pace(), animation_before_, animation_every)) animation_.start(*every, since);
 }
 
 bool Subscriptions::is_fast() const noexcept {

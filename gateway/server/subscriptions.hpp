@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -29,12 +30,13 @@ class Subscriptions {
   /// Whether one of the topics goes out at a rate.
   [[nodiscard]] static bool has_rate(const std::vector<std::string>& topics);
 
-  void start(const std::vector<std::string>& topics, double rate_hz);
+  /// Of samples that are taken after cycle `since`.
+  void start(const std::vector<std::string>& topics, double rate_hz, std::int64_t since);
   /// Ends the topics, or all of them when none is named.
   void stop(const std::vector<std::string>& topics);
   /// Streams joints and poses of links for an animation, or ends that; what the client subscribed to itself stays as it
-  /// is.
-  void animate(bool on);
+  /// is. Of samples that are taken after cycle `since`.
+  void animate(bool on, std::int64_t since);
   /// Whether it receives more than the watchers' rate.
   [[nodiscard]] bool is_fast() const noexcept;
   [[nodiscard]] bool has_events() const noexcept { return events_; }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -36,17 +35,19 @@ class TopicPace {
  public:
   [[nodiscard]] bool on() const noexcept { return every_ != 0; }
   [[nodiscard]] double every_cycles() const noexcept { return every_; }
-  void start(double every_cycles) noexcept {
+  /// With the first cycle after `since`: samples are told some time after they were taken, and one from before a client
+  /// asked would tell it of a machine that it has changed meanwhile.
+  void start(double every_cycles, std::int64_t since) noexcept {
     every_ = every_cycles;
-    next_ = -std::numeric_limits<double>::infinity();
+    next_ = static_cast<double>(since + 1);
   }
   void stop() noexcept { every_ = 0; }
   /// Whether this cycle's sample is due; counts it when so.
   [[nodiscard]] bool due(std::int64_t cycle) noexcept {
     if (every_ == 0) return false;
     const auto now = static_cast<double>(cycle);
-    if (now < next_ && next_ - now <= every_) return false;
-    const bool in_step = now >= next_ && now - next_ < 1;
+    if (now < next_) return false;
+    const bool in_step = now - next_ < 1;
     next_ = (in_step ? next_ : now) + every_;
     return true;
   }

@@ -97,11 +97,13 @@ class Learning(unittest.TestCase):
         """As the tree has them, whose loops know most of it already."""
         self.device.write_text(self.honest)
         self.assertEqual(self.appliance.rmac("load", "DMACXYZ").returncode, 0)
-        told = self.learn(passes=5)
-        before, after = told["passes"][0]["rms"], told["passes"][-1]["rms"]
-        for first, last in zip(before, after, strict=True):
-            self.assertLess(last, first / 2)
-        self.assertLess(max(after[:2]), 0.0005, "those that go round the circle")
+        told = self.learn(passes=6)
+        before = told["passes"][0]["rms"]
+        # What is kept: an axis that sticks elsewhere once has a pass that is worse.
+        kept = [told["passes"][best - 1]["rms"][joint] for joint, best in enumerate(told["best_pass"])]
+        for first, best in zip(before, kept, strict=True):
+            self.assertLess(best, first / 2)
+        self.assertLess(max(kept[:2]), 0.0005, "those that go round the circle")
 
     def test_drives_that_answer_a_cycle_late_teach_too(self):
         with device_of(self.appliance) as device:

@@ -189,6 +189,26 @@ TEST(Learner, GoesBackToTheBestPassWhereItMakesThingsWorse) {
   for (const double offset : settled.next_parts().offsets) ASSERT_EQ(offset, 0);
 }
 
+// Red where it learns up to a lower frequency by forgetting what it knew above.
+TEST(Learner, APassThatWasDisturbedTakesNothingAway) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    Axis axis = random_axis(random);
+    axis.resonance_hz = 0;
+    Lesson lesson = learn(axis, seed, 5, axis.bandwidth_hz / 2);
+    const double best = std::ranges::min(lesson.rms);
+    Axis dirty = axis;
+    dirty.friction_n *= 3;  // a chip below the way cover
+    lesson.learner.learn(Loop(dirty, seed).run(lesson.learner.next().get()));
+    ASSERT_TRUE(lesson.learner.fell_back(0)) << seed;
+    for (int i = 0; i < 4; ++i) {
+      const Pass pass = Loop(axis, seed).run(lesson.learner.next().get());
+      EXPECT_LT(pass.rms(0), 1.1 * best) << "seed " << seed << ", pass " << i;
+      lesson.learner.learn(pass);
+    }
+  }
+}
+
 TEST(Learner, WhatIsNoisyOnlyIsNotMadeWorse) {
   Axis noisy;
   noisy.friction_n = noisy.cogging_n = 0;

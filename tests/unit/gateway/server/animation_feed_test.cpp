@@ -44,7 +44,7 @@ struct Feed : AnimationFeed {
 
 TEST(AnimationFeed, SendsSixtySamplesOfAThousandCyclesEvenlyApart) {
   Feed feed;
-  feed.start(1000.0 / 60);
+  feed.start(1000.0 / 60, -1);
   const auto told = feed.after(1, 60'000);
   ASSERT_EQ(told.size(), 1U);
   const json& samples = told[0]["params"]["samples"];
@@ -58,7 +58,7 @@ TEST(AnimationFeed, SendsSixtySamplesOfAThousandCyclesEvenlyApart) {
 TEST(AnimationFeed, LooksAtNothingWhileNobodyWatches) {
   Feed feed;
   EXPECT_TRUE(feed.after(1, 1000).empty());
-  feed.start(100);
+  feed.start(100, -1);
   EXPECT_EQ(feed.after(1001, 1000).size(), 1U);
   EXPECT_EQ(feed.looks, 10) << "once a sample that is due";
   feed.pace().stop();
@@ -71,7 +71,7 @@ TEST(AnimationFeed, TellsWhereMeasuredJointsHaveEachLink) {
   feed.scene.virtual_mode = true;
   feed.scene.tool = 7;
   feed.scene.frames = {{{1, 2, 3}, {1, 0, 0, 0}}, {{0, 0, -80}, {1, 0, 0, 0}}};
-  feed.start(1);
+  feed.start(1, -1);
   const json params = feed.after(30, 1).at(0).at("params");
   EXPECT_EQ(params["geometry"], 1);
   EXPECT_EQ(params["machine"], "Slides");
@@ -103,7 +103,7 @@ TEST(AnimationFeed, TellsWhereMeasuredJointsHaveEachLink) {
 
 TEST(AnimationFeed, BeginsANotificationWhereTheToolOrAFrameIsAnother) {
   Feed feed;
-  feed.start(1);
+  feed.start(1, -1);
   feed.take(moving_sample(1));
   feed.scene.tool.reset();
   feed.take(moving_sample(2));
@@ -120,7 +120,7 @@ TEST(AnimationFeed, BeginsANotificationWhereTheToolOrAFrameIsAnother) {
 
 TEST(AnimationFeed, FollowsASwapAndDropsWhatTheMachineBeforeLeftBehind) {
   Feed feed;
-  feed.start(1);
+  feed.start(1, -1);
   feed.take(moving_sample(1));
   feed.scene.drawing = slides_drawing(2, 10);
   const auto told = feed.after(2, 11);
@@ -138,14 +138,14 @@ TEST(AnimationFeed, SaysOnceWhatIsMissingOfAMachineAndAgainToWhoStartsAnew) {
   bare.machine = "Bare";
   bare.missing = "device.json of Bare has no \"Chain\"";
   feed.scene.drawing = std::make_shared<const MachineDrawing>(bare);
-  feed.start(1);
+  feed.start(1, -1);
   const auto told = feed.after(1, 100);
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(told[0]["params"]["missing"], bare.missing);
   EXPECT_EQ(told[0]["params"]["machine"], "Bare");
   EXPECT_TRUE(told[0]["params"]["samples"].empty());
   EXPECT_TRUE(feed.after(101, 100).empty());
-  feed.start(1);
+  feed.start(1, -1);
   EXPECT_EQ(feed.after(201, 100).size(), 1U);
   feed.scene.drawing = slides_drawing(4);
   EXPECT_EQ(feed.after(301, 1).at(0)["params"]["samples"].size(), 1U);

@@ -26,6 +26,9 @@ struct Topics : Subscriptions {
             1000, [](const CycleSample& sample) { return std::to_string(sample.cycle); },
             [this] { return Scene{.drawing = drawing}; }) {}
 
+  void start(const std::vector<std::string>& topics, double rate_hz) { Subscriptions::start(topics, rate_hz, cycle); }
+  void animate(bool on) { Subscriptions::animate(on, cycle); }
+
   /// How many samples each topic has in the batches after `count` cycles.
   std::map<std::string, std::size_t> batched(std::int64_t count) {
     for (std::int64_t end = cycle + count; cycle < end;) {
@@ -97,6 +100,18 @@ TEST(Subscriptions, AreFastAboveTheWatchersRateOnly) {
     EXPECT_TRUE(topics.is_fast());
     topics.stop({topic});
     EXPECT_FALSE(topics.is_fast());
+  }
+}
+
+TEST(Subscriptions, TellNothingOfCyclesBeforeTheyWereAskedFor) {
+  for (const char* topic : {"joints", "drives", "animation", "state"}) {
+    SCOPED_TRACE(topic);
+    Topics topics;
+    topics.Subscriptions::start({topic}, 200, 700);
+    topics.cycle = 100;  // the samples of a second wait still to be told
+    EXPECT_EQ(topics.batched(600), Counts{});
+    EXPECT_THAT(topics.states, testing::IsEmpty());
+    EXPECT_EQ(topics.batched(21).size() + topics.states.size(), topic == std::string("state") ? 5U : 1U);
   }
 }
 
