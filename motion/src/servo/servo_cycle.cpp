@@ -36,7 +36,7 @@ void ServoLoop::Impl::cycle(const ServoCommand& command, ServoReport& report) no
   } else {
     receive(command);
     obey(command);
-    read();
+    read(command.cycles_missed);
     watch_drives(command);
     finish_reset();
     run_homing(command);
@@ -102,14 +102,15 @@ const DriveFeedback& ServoLoop::Impl::told(std::size_t actuator) const noexcept 
 IndexSet ServoLoop::Impl::answering() const noexcept {
   IndexSet silent = 0;
   for (std::size_t i = 0; i < wiring.actuators(); ++i) {
-    if (!told(i).online) silent |= only(i);
+    if (!told(i).online || told(i).missed) silent |= only(i);
   }
   return silent == 0 ? ~IndexSet{0} : ~wiring.joints_of(silent);
 }
 
-void ServoLoop::Impl::read() noexcept {
+void ServoLoop::Impl::read(std::uint64_t late) noexcept {
   shafts.read();
-  positions.step(shafts, joints.velocity());
+  positions.step(shafts, joints.velocity(), late);
+  if (late > 0) joints.forget_steps();
   joints.read(shafts.rad(), shafts.rad_s(), live.all(), live.all() & answering(), setpoints.velocity());
   spindles.read();
 }
@@ -226,7 +227,12 @@ void ServoLoop::Impl::choose_setpoints(const ServoCommand& command) noexcept {
 JointSeen ServoLoop::Impl::seen(std::size_t joint) const noexcept {
   const ForceLoop& force_loop = setpoints.force_loop(joint);
   const std::optional<double> measured = joints.measured_effort(joint);
-  return {.jump = positions.jump(joint) != 0 ? positions.jump(joint) : joints.jump(joint),
+  const bool answered = has(answering(), joint), unbelieved = positions.jump(joint) != 0;
+  return {.jump = unbelieved ? positions.jump(joint)
+                  : answered ? joints.jump(joint)
+                             : 0,
+          .may_stop = !unbelieved && joints.may_stop(joint),
+          .answered = answered,
           .velocity = joints.velocity()[joint],
           .following_error = setpoints.position()[joint] - setpoints.gone_on(joint) - joints.position()[joint],
           .position_set = setpoints.position()[joint],
@@ -249,7 +255,7 @@ void ServoLoop::Impl::watch_motion(const ServoCommand& command) noexcept {
     if (state.powered() && live[j]) {
       motion_watch.joint(j).step(seen(j), state);
     } else {
-      motion_watch.joint(j).rest();
+      motion_watch.joint(j).rest(joints.position()[j]);
     }
   }
   if (state.powered()) {

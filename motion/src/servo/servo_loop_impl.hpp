@@ -42,7 +42,8 @@ struct ServoLoop::Impl {
   // The steps of a cycle, in their order.
   void receive(const ServoCommand& command) noexcept;
   void obey(const ServoCommand& command) noexcept;
-  void read() noexcept;
+  /// `late`: cycles that were missed before this one.
+  void read(std::uint64_t late) noexcept;
   void watch_drives(const ServoCommand& command) noexcept;
   void finish_reset() noexcept;
   void run_homing(const ServoCommand& command) noexcept;

@@ -6,6 +6,13 @@
 
 namespace rmac {
 
+namespace {
+
+/// What a joint comes back with from what stopped it is less than it came with, so many cycles ago.
+constexpr double kFades = 0.95;
+
+}  // namespace
+
 JointReader::JointReader(const ServoLoopParts& parts, const Wiring& wiring, Transmission& transmission)
     : joints_(parts.joints),
       period_s_(parts.period_s),
@@ -33,6 +40,9 @@ void JointReader::read(std::span<const double> shafts, std::span<const double> s
 
 void JointReader::read_jump(std::size_t joint, double shown, bool steady) noexcept {
   jump_[joint] = shown_history_[joint] == 2 ? shown - 2 * shown1_[joint] + shown2_[joint] : 0;
+  const double step = std::abs(shown - shown1_[joint]);
+  may_stop_[joint] = step <= fastest_[joint] + joints_[joint].bounds.jump / 2;
+  fastest_[joint] = shown_history_[joint] == 0 ? 0 : std::max(step, kFades * fastest_[joint]);
   shown2_[joint] = shown1_[joint];
   shown1_[joint] = shown;
   shown_history_[joint] = steady ? static_cast<std::uint8_t>(std::min(shown_history_[joint] + 1, 2)) : std::uint8_t{0};

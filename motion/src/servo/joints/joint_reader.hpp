@@ -24,6 +24,9 @@ class JointReader {
   /// those of them all of whose drives answer; the counter of another one may change by more than its shaft.
   void read(std::span<const double> shafts, std::span<const double> shaft_velocities, IndexSet live, IndexSet steady,
             std::span<const double> velocity_set) noexcept;
+  /// Before `read` in a cycle that comes late: the drives have gone on for longer than a cycle, and no step of it is
+  /// one.
+  void forget_steps() noexcept { shown_history_.fill(0); }
   /// Where there are no drives: the joints are where they are wanted.
   void reflect(std::span<const double> position_set, std::span<const double> velocity_set) noexcept;
 
@@ -41,6 +44,8 @@ class JointReader {
   }
   /// Change of the joint's step from the last cycle to this one, before corrections.
   [[nodiscard]] double jump(std::size_t joint) const noexcept { return jump_[joint]; }
+  /// With this cycle's step it was no faster than a moment before, either way: what made a jump of it may be a stop.
+  [[nodiscard]] bool may_stop(std::size_t joint) const noexcept { return may_stop_[joint]; }
 
  private:
   void read_jump(std::size_t joint, double shown, bool steady) noexcept;
@@ -52,7 +57,9 @@ class JointReader {
   std::array<double, kMaxJoints> position_{}, velocity_{};
   std::array<double, kMaxJoints> force_{};
   std::array<double, kMaxJoints> jump_{};
-  std::array<double, kMaxJoints> shown1_{}, shown2_{};    ///< positions one and two cycles ago, uncorrected
+  std::array<double, kMaxJoints> shown1_{}, shown2_{};  ///< positions one and two cycles ago, uncorrected
+  std::array<double, kMaxJoints> fastest_{};            ///< steps, lately
+  std::array<bool, kMaxJoints> may_stop_{};
   std::array<std::uint8_t, kMaxJoints> shown_history_{};  ///< how many of the two there are
 };
 

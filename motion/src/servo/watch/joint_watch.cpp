@@ -1,6 +1,7 @@
 #include "servo/watch/joint_watch.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace rmac {
 
@@ -10,9 +11,7 @@ void JointWatch::raise(ServoFault::Kind kind, double value, double bound, FaultS
 
 void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
   const JointBounds& bounds = joint_->bounds;
-  if (bounds.jump > 0 && std::abs(seen.jump) > bounds.jump) {
-    raise(ServoFault::Kind::EncoderJump, seen.jump, bounds.jump, faults);
-  }
+  watch_jump(seen, faults);
   watch_sensor(faults);
   if (seen.bounces) {
     oscillation_.rest();
@@ -22,10 +21,13 @@ void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
   response_.step({.effort = oscillation_.acted(),
                   .position = seen.loop.position,
                   .position_set = seen.following_error + seen.loop.position,
-                  .out_of_bound = std::abs(seen.following_error) > joint_->max_following_error},
+                  .out_of_bound = std::abs(seen.following_error) > joint_->max_following_error,
+                  .swings = oscillation_.swings(),
+                  .answered = seen.answered},
                  faults);
   if (!(std::abs(seen.following_error) <= joint_->max_following_error)) {
-    raise(ServoFault::Kind::FollowingError, seen.following_error, joint_->max_following_error, faults);
+    if (oscillation_.swings() && !response_.encoder_froze()) oscillation_.raise(faults);
+    response_.name_error(seen.following_error, faults);
   }
   if (too_fast_.step(seen.velocity, bounds.velocity)) {
     raise(ServoFault::Kind::VelocityBound, seen.velocity, bounds.velocity, faults);
@@ -37,6 +39,24 @@ void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
     raise(ServoFault::Kind::ForceLimit, seen.force, most, faults);
   }
   if (by_force) watch_contact(seen, faults);
+}
+
+// What meets something hard, or swings with all its effort, changes its speed within a cycle as well, but is no faster
+// then. A reading that jumped goes on as before in the cycle behind.
+void JointWatch::watch_jump(const JointSeen& seen, FaultSink& faults) noexcept {
+  const double bound = joint_->bounds.jump;
+  const double suspected = std::exchange(suspected_, 0);
+  const bool steady = std::exchange(steady_, std::abs(seen.jump) <= bound / 2);
+  // With all its effort a motor may do to a spring what it cannot do to its joint.
+  constexpr double kTrembles = 4;
+  const bool trembles = oscillation_.trembles() && std::abs(seen.jump) <= kTrembles * bound;
+  if (!(bound > 0) || trembles) return;
+  if (suspected != 0 && std::abs(suspected + seen.jump) < std::abs(suspected) / 2) {
+    raise(ServoFault::Kind::EncoderJump, suspected, bound, faults);
+  } else if (std::abs(seen.jump) > bound) {
+    if (!seen.may_stop) raise(ServoFault::Kind::EncoderJump, seen.jump, bound, faults);
+    if (steady) suspected_ = seen.jump;
+  }
 }
 
 void JointWatch::watch_sensor(FaultSink& faults) const noexcept {

@@ -14,6 +14,8 @@ namespace rmac {
 /// What the watch over a joint looks at in one cycle: mm or degrees and s, N or N·m.
 struct JointSeen {
   double jump = 0;             ///< change of its position's step
+  bool may_stop = false;       ///< which makes it no faster than it was a moment before
+  bool answered = true;        ///< its drives did in this cycle
   double velocity = 0;         ///< measured
   double following_error = 0;  ///< of the cycle in which the drives were where they say
   double position_set = 0, velocity_set = 0;
@@ -36,20 +38,29 @@ class JointWatch {
         response_(joint, index, period_s) {}
 
   void step(const JointSeen& seen, FaultSink& faults) noexcept;
-  /// The joint is not under control.
+  /// The joint is not under control; where its encoder puts it meanwhile.
+  void rest(double position) noexcept {
+    rest();
+    response_.rest(position);
+  }
   void rest() noexcept {
     too_fast_.restart();
+    suspected_ = 0;
+    steady_ = true;
     oscillation_.rest();
     response_.rest();
   }
 
  private:
+  void watch_jump(const JointSeen& seen, FaultSink& faults) noexcept;
   void watch_sensor(FaultSink& faults) const noexcept;
   void watch_contact(const JointSeen& seen, FaultSink& faults) const noexcept;
   void raise(ServoFault::Kind kind, double value, double bound, FaultSink& faults) const noexcept;
 
   const ServoJoint* joint_;
   std::uint32_t index_;
+  double suspected_ = 0;  ///< a jump in the last cycle that may have been a stop
+  bool steady_ = true;    ///< there was none of half the bound
   CyclesBeyond too_fast_;
   OscillationWatch oscillation_;
   ResponseWatch response_;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "rmac/motion/machine_size.hpp"
@@ -28,7 +29,8 @@ class PositionWatch {
   PositionWatch(const ServoLoopParts& parts, const Wiring& wiring);
 
   /// One cycle, once `shafts` are read: takes back what is not believed. `velocity`: of the joints, one cycle ago.
-  void step(Shafts& shafts, std::span<const double> velocity) noexcept;
+  /// `late`: cycles that were missed since then, in which drives went on.
+  void step(Shafts& shafts, std::span<const double> velocity, std::uint64_t late = 0) noexcept;
   /// Counters of these actuators jump while their drives look for home.
   void forget(IndexSet actuators) noexcept;
   /// They found it.
@@ -68,7 +70,7 @@ class PositionWatch {
   using JointArray = std::array<double, kMaxJoints>;
 
   /// `now`: where the shafts put the joints.
-  void judge(const JointArray& now, Shafts& shafts) noexcept;
+  void judge(const JointArray& now, int late, Shafts& shafts) noexcept;
   void resolve(std::size_t actuator, Shafts& shafts) noexcept;
   void believe(std::size_t actuator, Shafts& shafts) noexcept;
   void doubt(std::size_t actuator, bool unsettles) noexcept;
@@ -89,11 +91,11 @@ class PositionWatch {
 
   /// Of a drive whose position is in doubt, or whose last answers are missing.
   struct Doubt {
-    std::uint32_t reads = 0;  ///< that there were before
-    int waited = 0;           ///< cycles for the next
-    int missed = 0;           ///< answers, since the last one that counts
-    int repeated = 0;         ///< answers on end that agree with `candidate`
-    std::int32_t candidate = 0;
+    std::uint32_t reads = 0;                  ///< that there were before
+    int waited = 0;                           ///< cycles for the next
+    int missed = 0;                           ///< answers, since the last one that counts
+    int repeated = 0;                         ///< answers on end that agree with `candidate`
+    std::optional<std::int32_t> candidate{};  ///< what the last of them told
   };
 
   /// Of a joint, in mm or degrees, before corrections.

@@ -41,6 +41,51 @@ TEST_F(WatchedJoint, JumpsInOneCycle) {
   EXPECT_THAT(faults_.raised, ElementsAre(fault(Kind::EncoderJump, -0.11, 0.1)));
 }
 
+// What it meets takes its speed within a cycle; a reading that jumped goes on as before.
+TEST_F(WatchedJoint, MayStopWithinACycleWhereItsReadingDoesNotGoOnAsBefore) {
+  for (const double then : {0.0, -0.04, 0.05}) {
+    watch_.rest();
+    watch_.step({.jump = -0.15, .may_stop = true}, faults_);
+    watch_.step({.jump = then, .may_stop = true}, faults_);
+    watch_.step({}, faults_);
+  }
+  EXPECT_THAT(faults_.raised, IsEmpty());
+  watch_.step({.jump = -0.15, .may_stop = true}, faults_);
+  watch_.step({.jump = 0.15, .may_stop = true}, faults_);
+  EXPECT_THAT(faults_.raised, ElementsAre(fault(Kind::EncoderJump, -0.15, 0.1)));
+}
+
+// It goes at 200 mm/s and stops within some cycles: what it met is told, and not that it is behind.
+TEST_F(WatchedJoint, IsBlockedWhereItStaysBehindAtSpeed) {
+  joint_.max_effort = 800;
+  joint_.bounds.velocity = 0;
+  double set = 0, position = 0;
+  for (int i = 0; i < 60 && faults_.raised.empty(); ++i) {
+    set += 0.2;
+    position += i < 30 ? 0.2 : 0.01;
+    watch_.step(
+        {.following_error = set - position, .loop = {.effort = 300, .effort_measured = true, .position = position}},
+        faults_);
+  }
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_EQ(faults_.raised[0].kind, Kind::StandsStill);
+}
+
+// Its effort grows by little before it is behind, as with soft gains.
+TEST_F(WatchedJoint, GoesTheWrongWayWhereItRunsAwayFromItsSetpointAgainstALittleEffort) {
+  joint_.max_effort = 8000;
+  joint_.bounds.velocity = 0;
+  double position = 0.001;
+  for (int i = 0; i < 200 && faults_.raised.empty(); ++i) {
+    position *= 1.1;
+    watch_.step({.following_error = -position,
+                 .loop = {.effort = -300 * position, .effort_measured = true, .position = position}},
+                faults_);
+  }
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_EQ(faults_.raised[0].kind, Kind::WrongDirection);
+}
+
 TEST_F(WatchedJoint, WithoutABoundMayJumpAndRun) {
   joint_.bounds.jump = joint_.bounds.velocity = 0;
   for (int i = 0; i < 5; ++i) watch_.step({.jump = 50, .velocity = 1e6}, faults_);

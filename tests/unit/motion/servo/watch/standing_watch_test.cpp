@@ -1,0 +1,105 @@
+#include "servo/watch/standing_watch.hpp"
+
+#include "unit/motion/servo/recorded_faults.hpp"
+#include "unit/motion/servo/servo_fixture.hpp"
+
+namespace rmac::servo_test {
+namespace {
+
+using Kind = ServoFault::Kind;
+using testing::IsEmpty;
+
+/// 800 N, 1 m/s², 0.5 mm of following error; a digit is 0.0001 mm.
+class StandingJoint : public testing::Test {
+ protected:
+  StandingJoint() {
+    joint_.max_effort = 800;
+    joint_.max_following_error = 0.5;
+    joint_.bounds.stop_deceleration = 1000;
+  }
+  void step(double position, double position_set, double effort = 0) {
+    watch_.step({.effort = effort, .position = position, .position_set = position_set}, faults_);
+  }
+  /// It rests, and its last digit goes to and fro.
+  void rest_restlessly(int cycles) {
+    for (int i = 0; i < cycles; ++i) step(i % 2 == 0 ? 0 : 1e-4, 0);
+  }
+  ServoJoint joint_;
+  StandingWatch watch_{joint_, 4, 0.001};
+  RecordedFaults faults_;
+};
+
+TEST_F(StandingJoint, HasAFrozenEncoderWhereItsLastDigitRestsWhileTheEffortChanges) {
+  rest_restlessly(30);
+  int cycles = 0;
+  while (faults_.raised.empty() && cycles < 1000) step(0, 0, 2.0 * ++cycles);
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_EQ(faults_.raised[0].kind, Kind::EncoderFrozen);
+  EXPECT_NEAR(cycles, 21, 2) << "20 ms, and 24 N of 800 sooner";
+}
+
+TEST_F(StandingJoint, MayRestWithACoarseEncoderUntilItsEffortIsThatOfNoFriction) {
+  step(0, 0);
+  for (int i = 0; i < 400; ++i) step(0, 1e-5 * i, 0.39 * i);
+  EXPECT_THAT(faults_.raised, IsEmpty()) << "a fifth of its effort";
+  for (int i = 0; i < 20; ++i) step(0, 0.005, 200);
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_EQ(faults_.raised[0].kind, Kind::StandsStill);
+}
+
+// A push that grows is held without an error that grows: nothing moves.
+TEST_F(StandingJoint, MayBePushedAtRestWithACoarseEncoder) {
+  for (int i = 0; i < 400; ++i) step(0, 0, 1.9 * i);
+  EXPECT_THAT(faults_.raised, IsEmpty());
+}
+
+TEST_F(StandingJoint, HasAFrozenEncoderWhereItStopsDeadAtSpeed) {
+  for (int i = 0; i < 20; ++i) step(0.05 * i, 0.05 * i);
+  EXPECT_FALSE(watch_.froze());
+  for (int i = 0; i < 4; ++i) step(0.05 * 19, 1);
+  EXPECT_TRUE(watch_.froze());
+  step(0.96, 1);
+  EXPECT_FALSE(watch_.froze());
+}
+
+TEST_F(StandingJoint, IsBlockedThoughWhatBlocksItGivesWay) {
+  int cycles = 0;
+  while (faults_.raised.empty() && cycles < 1000) {
+    ++cycles;
+    step(0.002 * cycles, 0.01 * cycles, 300);
+  }
+  EXPECT_NEAR(cycles, 100, 3) << "a millimetre";
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_EQ(faults_.raised[0].kind, Kind::StandsStill);
+}
+
+TEST_F(StandingJoint, IsBlockedOnAWayToAndFroThatIsNoMillimetreLong) {
+  double way = 0, before = 0;
+  for (int i = 0; i < 5000 && faults_.raised.empty(); ++i) {
+    const double set = 0.2 * std::sin(0.02 * i);
+    way += std::abs(set - std::exchange(before, set));
+    step(i % 2 == 0 ? 0 : 1e-4, set, 100);
+  }
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_EQ(faults_.raised[0].kind, Kind::StandsStill);
+  EXPECT_NEAR(way, 1, 0.05);
+}
+
+TEST_F(StandingJoint, IsBlockedWhereAllItsEffortForATenthOfASecondComesToNothing) {
+  int cycles = 0;
+  while (faults_.raised.empty() && cycles < 1000) {
+    ++cycles;
+    step(cycles % 2 == 0 ? 0 : 1e-4, 1e-5 * cycles, 799);
+  }
+  EXPECT_NEAR(cycles, 100, 3);
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_EQ(faults_.raised[0].kind, Kind::StandsStill);
+}
+
+TEST_F(StandingJoint, MaySpeedUpWithAllItsEffort) {
+  for (int i = 0; i < 400; ++i) step(5e-4 * i * i, 5e-4 * i * i, 800);
+  EXPECT_THAT(faults_.raised, IsEmpty());
+}
+
+}  // namespace
+}  // namespace rmac::servo_test
