@@ -17,7 +17,7 @@ class FaultyBus final : public DigitalControlInterface {
   /// The phases of a motor are exchanged: it turns against its torque, and its drive does not know.
   void reverse_motor(std::size_t axis) { axes_[axis].motor_reversed = true; }
   void reverse_encoder(std::size_t axis) { axes_[axis].encoder_reversed = true; }
-  /// From the next exchange on this drive is silent. As on CANopen, the first answer that is missing is waited for.
+  /// From the next cycle on this drive is silent. As on CANopen, the first answer that is missing is waited for.
   void silence(std::size_t axis) {
     bus_->set_online(axis, false);
     axes_[axis].misses = true;
@@ -26,7 +26,7 @@ class FaultyBus final : public DigitalControlInterface {
   void miss_an_answer(std::size_t axis) { axes_[axis].misses = true; }
   /// The next answer tells what the one before did, and nobody knows.
   void repeat_an_answer(std::size_t axis) { axes_[axis].repeats = true; }
-  /// The next exchange comes a cycle late: drives went on meanwhile, each with what it was last told.
+  /// The next answers come a cycle late: drives went on meanwhile, each with what it was last told.
   void come_late() { late_ = true; }
   /// N, positive towards larger positions, that the sensor beside this drive feels.
   void feel(std::size_t axis, double newton, double newton_per_count) {
@@ -36,16 +36,18 @@ class FaultyBus final : public DigitalControlInterface {
   [[nodiscard]] std::size_t axis_count() const noexcept override { return axes_.size(); }
   [[nodiscard]] Expected<> start() override { return bus_->start(); }
   void stop() noexcept override { bus_->stop(); }
-  [[nodiscard]] bool exchange(std::span<const DriveCommand> commands,
-                              std::span<DriveFeedback> feedback) noexcept override {
+  [[nodiscard]] bool receive(std::span<DriveFeedback> feedback) noexcept override {
     if (std::exchange(late_, false)) static_cast<void>(bus_->exchange(turned_, feedback));
+    const bool works = bus_->receive(feedback);
+    for (std::size_t i = 0; i < axes_.size(); ++i) pass_on(axes_[i], feedback[i]);
+    return works;
+  }
+  [[nodiscard]] bool send(std::span<const DriveCommand> commands) noexcept override {
     std::copy(commands.begin(), commands.end(), turned_.begin());
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       if (axes_[i].motor_reversed) turn(turned_[i].target_torque_permille);
     }
-    const bool works = bus_->exchange(turned_, feedback);
-    for (std::size_t i = 0; i < axes_.size(); ++i) pass_on(axes_[i], feedback[i]);
-    return works;
+    return bus_->send(turned_);
   }
   [[nodiscard]] DriveMode mode(std::size_t axis) const noexcept override { return bus_->mode(axis); }
   [[nodiscard]] bool tells_torque(std::size_t axis) const noexcept override {
