@@ -24,6 +24,7 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
       spindles(parts.spindles, parts.period_s, state),
       rest(parts.actuators.size() + parts.spindles.size(), parts.period_s),
       torques(*parts.actuator_map, parts.actuators, parts.period_s),
+      late_answers(wiring.actuator_delays()),
       aims(parts.actuators, wiring.actuator_delays(), parts.period_s) {
   if (parts.virtual_mode) joints.reflect(setpoints.position(), setpoints.velocity());
 }
@@ -109,9 +110,11 @@ IndexSet ServoLoop::Impl::answering() const noexcept {
 
 void ServoLoop::Impl::read(std::uint64_t late) noexcept {
   shafts.read();
+  late = late_answers.step(late);
   positions.step(shafts, joints.velocity(), late);
   if (late > 0) joints.forget_steps();
-  joints.read(shafts.rad(), shafts.rad_s(), live.all(), live.all() & answering(), setpoints.velocity());
+  answered = answering();
+  joints.read(shafts.rad(), shafts.rad_s(), live.all(), live.all() & answered, setpoints.velocity());
   spindles.read();
 }
 
@@ -227,12 +230,11 @@ void ServoLoop::Impl::choose_setpoints(const ServoCommand& command) noexcept {
 JointSeen ServoLoop::Impl::seen(std::size_t joint) const noexcept {
   const ForceLoop& force_loop = setpoints.force_loop(joint);
   const std::optional<double> measured = joints.measured_effort(joint);
-  const bool answered = has(answering(), joint), unbelieved = positions.jump(joint) != 0;
-  return {.jump = unbelieved ? positions.jump(joint)
-                  : answered ? joints.jump(joint)
-                             : 0,
-          .may_stop = !unbelieved && joints.may_stop(joint),
-          .answered = answered,
+  const bool unbelieved = positions.jump(joint) != 0;
+  return {.position = {.jump = unbelieved ? positions.jump(joint) : joints.jump(joint),
+                       .step = joints.step(joint),
+                       .may_stop = !unbelieved && joints.may_stop(joint)},
+          .answered = has(answered, joint),
           .velocity = joints.velocity()[joint],
           .following_error = setpoints.position()[joint] - setpoints.gone_on(joint) - joints.position()[joint],
           .position_set = setpoints.position()[joint],
@@ -255,7 +257,7 @@ void ServoLoop::Impl::watch_motion(const ServoCommand& command) noexcept {
     if (state.powered() && live[j]) {
       motion_watch.joint(j).step(seen(j), state);
     } else {
-      motion_watch.joint(j).rest(joints.position()[j]);
+      motion_watch.joint(j).rest(has(answered, j) ? std::optional(joints.position()[j]) : std::nullopt);
     }
   }
   if (state.powered()) {

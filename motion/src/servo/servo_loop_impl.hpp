@@ -23,6 +23,7 @@
 #include "servo/spindles/spindles.hpp"
 #include "servo/state/loop_state.hpp"
 #include "servo/stop/rest_watch.hpp"
+#include "servo/joints/late_answers.hpp"
 #include "servo/watch/deadline_watch.hpp"
 #include "servo/watch/input_watch.hpp"
 #include "servo/watch/motion_watch.hpp"
@@ -90,7 +91,9 @@ struct ServoLoop::Impl {
   Spindles spindles;
   RestWatch rest;
   ShaftTorques torques;
+  LateAnswers late_answers;
   ShaftAims aims;
+  IndexSet answered = 0;  ///< joints whose drives answered in this cycle
 };
 
 }  // namespace rmac

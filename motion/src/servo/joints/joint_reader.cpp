@@ -39,7 +39,9 @@ void JointReader::read(std::span<const double> shafts, std::span<const double> s
 }
 
 void JointReader::read_jump(std::size_t joint, double shown, bool steady) noexcept {
-  jump_[joint] = shown_history_[joint] == 2 ? shown - 2 * shown1_[joint] + shown2_[joint] : 0;
+  step_[joint].reset();
+  if (shown_history_[joint] > 0 && steady) step_[joint] = shown - shown1_[joint];
+  jump_[joint] = steady && shown_history_[joint] == 2 ? shown - 2 * shown1_[joint] + shown2_[joint] : 0;
   const double step = std::abs(shown - shown1_[joint]);
   may_stop_[joint] = step <= fastest_[joint] + joints_[joint].bounds.jump / 2;
   fastest_[joint] = shown_history_[joint] == 0 ? 0 : std::max(step, kFades * fastest_[joint]);

@@ -44,6 +44,8 @@ class JointReader {
   }
   /// Change of the joint's step from the last cycle to this one, before corrections.
   [[nodiscard]] double jump(std::size_t joint) const noexcept { return jump_[joint]; }
+  /// Its last step, where drives answered in both cycles.
+  [[nodiscard]] std::optional<double> step(std::size_t joint) const noexcept { return step_[joint]; }
   /// With this cycle's step it was no faster than a moment before, either way: what made a jump of it may be a stop.
   [[nodiscard]] bool may_stop(std::size_t joint) const noexcept { return may_stop_[joint]; }
 
@@ -57,6 +59,7 @@ class JointReader {
   std::array<double, kMaxJoints> position_{}, velocity_{};
   std::array<double, kMaxJoints> force_{};
   std::array<double, kMaxJoints> jump_{};
+  std::array<std::optional<double>, kMaxJoints> step_{};
   std::array<double, kMaxJoints> shown1_{}, shown2_{};  ///< positions one and two cycles ago, uncorrected
   std::array<double, kMaxJoints> fastest_{};            ///< steps, lately
   std::array<bool, kMaxJoints> may_stop_{};

@@ -10,6 +10,7 @@ namespace {
 constexpr std::size_t kLeast = 3;    // samples: less may be a word that came late
 constexpr double kGrowsBy = 0.02;    // of the bound, in a sample: one word that is wrong makes one step
 constexpr double kStaysShare = 0.5;  // of what it was to go: less, and something holds it
+constexpr double kLeastWay = 0.05;   // mm or degrees: sound joints stand for so much where friction turns round
 constexpr double kRunsOn = 0.9;      // as in WrongDirection: less, and the effort holds it better and better
 constexpr double kThirdOfAll = 1.0 / 3;
 
@@ -70,7 +71,7 @@ ErrorHistory::Cause ErrorHistory::cause(double bound) const noexcept {
   const double wanted = ago(0).position_set - ago(since).position_set;
   const double went = ago(0).position - ago(since).position;
   const double error = ago(0).position_set - ago(0).position;
-  const bool behind = error * wanted > 0 && std::abs(wanted) > kStaysShare * bound;
+  const bool behind = error * wanted > 0 && std::abs(wanted) > std::max(kStaysShare * bound, kLeastWay);
   const bool pushed = ago(0).effort * error > 0;
   const auto error_ago = [this](std::size_t k) { return std::abs(ago(k).position_set - ago(k).position); };
   const bool grows = error_ago(0) > error_ago(1) && error_ago(1) > error_ago(2) + kGrowsBy * bound;

@@ -1,7 +1,6 @@
 #include "servo/watch/joint_watch.hpp"
 
 #include <cmath>
-#include <utility>
 
 namespace rmac {
 
@@ -11,7 +10,9 @@ void JointWatch::raise(ServoFault::Kind kind, double value, double bound, FaultS
 
 void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
   const JointBounds& bounds = joint_->bounds;
-  watch_jump(seen, faults);
+  JumpSeen jump = seen.position;
+  jump.trembles = oscillation_.trembles();
+  jumps_.step(jump, faults);
   watch_sensor(faults);
   if (seen.bounces) {
     oscillation_.rest();
@@ -39,24 +40,6 @@ void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
     raise(ServoFault::Kind::ForceLimit, seen.force, most, faults);
   }
   if (by_force) watch_contact(seen, faults);
-}
-
-// What meets something hard, or swings with all its effort, changes its speed within a cycle as well, but is no faster
-// then. A reading that jumped goes on as before in the cycle behind.
-void JointWatch::watch_jump(const JointSeen& seen, FaultSink& faults) noexcept {
-  const double bound = joint_->bounds.jump;
-  const double suspected = std::exchange(suspected_, 0);
-  const bool steady = std::exchange(steady_, std::abs(seen.jump) <= bound / 2);
-  // With all its effort a motor may do to a spring what it cannot do to its joint.
-  constexpr double kTrembles = 4;
-  const bool trembles = oscillation_.trembles() && std::abs(seen.jump) <= kTrembles * bound;
-  if (!(bound > 0) || trembles) return;
-  if (suspected != 0 && std::abs(suspected + seen.jump) < std::abs(suspected) / 2) {
-    raise(ServoFault::Kind::EncoderJump, suspected, bound, faults);
-  } else if (std::abs(seen.jump) > bound) {
-    if (!seen.may_stop) raise(ServoFault::Kind::EncoderJump, seen.jump, bound, faults);
-    if (steady) suspected_ = seen.jump;
-  }
 }
 
 void JointWatch::watch_sensor(FaultSink& faults) const noexcept {

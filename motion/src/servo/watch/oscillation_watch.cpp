@@ -16,7 +16,8 @@ constexpr double kLasts = 0.8;          // a swing with a damping of 2.4 % falls
 constexpr double kSlowHz = 40, kGrows = 1.3;
 // Where a loop gives back no more than friction takes, the work is next to nothing, and half a cycle by which effort
 // and way are apart decides on its sign. What holds back a force from outside is far below.
-constexpr double kResists = 0.25;
+constexpr double kResists = 0.12;
+constexpr double kRises = 1.05;    // since the first turns: it grows, if slowly
 constexpr double kPathTurn = 0.1;  // of the largest acceleration that the path asks for
 constexpr double kLeastAcceleration = 1e-3;
 
@@ -45,7 +46,7 @@ void OscillationWatch::rest() noexcept {
   turns_.restart();
   commanded_.fill(0);
   begun_ = false;
-  chain_ = 0;
+  chain_ = path_chain_ = 0;
 }
 
 void OscillationWatch::add_turn() noexcept {
@@ -95,18 +96,21 @@ void OscillationWatch::step(const OscillationSeen& seen, FaultSink& faults) noex
   changes_.efforts += effort_change * effort_change;
   changes_.ways += way_change * way_change;
   most_acceleration_ = std::max(most_acceleration_, std::abs(seen.acceleration_set));
-  if (path_turns_.step(seen.acceleration_set, std::max(kPathTurn * most_acceleration_, kLeastAcceleration)))
+  if (path_turns_.step(seen.acceleration_set, std::max(kPathTurn * most_acceleration_, kLeastAcceleration))) {
     ++path_turned_;
+    ++path_chain_;
+  }
   if (turns) add_turn();
   if (static_cast<double>(cycles_ - last_turn_) * period_s_ > kSlowestTurnS) {
-    chain_ = 0;
+    chain_ = path_chain_ = 0;
     return begin();
   }
   if (!turns) return;
   if (lasts()) return raise(faults);
-  // What was large at first, and then goes on smaller, is looked at anew.
+  // What was large at first, and then goes on smaller, is looked at anew; what grows, however slowly, is not forgotten.
   const bool seen_long = static_cast<double>(cycles_) * period_s_ >= kLeastTimeS;
-  if (seen_long && turned_ > kTurns + 2 * path_turned_ + kCompared) begin();
+  const bool grows = latest_swings() > kRises * swings_.first;
+  if (seen_long && !grows && turned_ > kTurns + 2 * path_turned_ + kCompared) begin();
 }
 
 void OscillationWatch::raise(FaultSink& faults) const noexcept {

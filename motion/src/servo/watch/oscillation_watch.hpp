@@ -34,8 +34,8 @@ class OscillationWatch {
   [[nodiscard]] double acted() const noexcept { return last_effort_; }
   /// Two periods of it were seen, which the path does not explain.
   [[nodiscard]] bool swings() const noexcept { return turned_ >= kTurns - 2 + 2 * path_turned_; }
-  /// The effort turned round some times.
-  [[nodiscard]] bool trembles() const noexcept { return chain_ >= 3; }
+  /// The effort turned round some times more than the path explains.
+  [[nodiscard]] bool trembles() const noexcept { return chain_ >= 3 + 2 * path_chain_; }
   void raise(FaultSink& faults) const noexcept;
   /// The joint is not under control.
   void rest() noexcept;
@@ -63,7 +63,8 @@ class OscillationWatch {
 
   // Since the first turn.
   int turned_ = 0;
-  int chain_ = 0;  ///< turns on end, of which those that became smaller were forgotten
+  int chain_ = 0;       ///< turns on end, of which those that became smaller were forgotten
+  int path_chain_ = 0;  ///< of the path, meanwhile
   int path_turned_ = 0;
   double most_acceleration_ = 0;
   std::int64_t cycles_ = 0;

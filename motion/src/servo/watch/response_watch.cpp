@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rmac {
 
@@ -16,19 +17,15 @@ constexpr double kHeldShare = 0.9;       // of what it gained in the first half:
 
 }  // namespace
 
-void ResponseWatch::rest() noexcept {
+void ResponseWatch::rest(std::optional<double> position) noexcept {
   begun_ = false;
   last_way_ = 0;
+  cycles_ = 0;
   forget_direction(0);
-  standing_.rest();
+  standing_.rest(position);
   lately_.restart();
   longer_.restart();
   back_ = forth_ = 0;
-}
-
-void ResponseWatch::rest(double position) noexcept {
-  rest();
-  standing_.rest(position);
 }
 
 void ResponseWatch::step(const ResponseSeen& seen, FaultSink& faults) noexcept {
@@ -41,15 +38,17 @@ void ResponseWatch::step(const ResponseSeen& seen, FaultSink& faults) noexcept {
     standing_.step(seen, faults);
     return;
   }
-  const double way = seen.position - last_position_;
-  last_position_ = seen.position;
   lately_.step(seen);
   longer_.step(seen);
   // Force control goes where the part lets it: down behind what it lets down, back where less is wanted, or nowhere.
-  if (joint_->method != ControlMethod::Force) {
-    watch_direction(seen, way, faults);
-    standing_.step(seen, faults);
-  }
+  const bool looks = joint_->method != ControlMethod::Force;
+  if (looks) standing_.step(seen, faults);
+  ++cycles_;
+  if (!seen.answered) return;
+  // Where answers were missing, the way is that of several cycles.
+  const double way = (seen.position - last_position_) / std::exchange(cycles_, 0);
+  if (looks) watch_direction(seen, way, faults);
+  last_position_ = seen.position;
   last_way_ = way;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "rmac/motion/servo/servo_loop_parts.hpp"
 #include "servo/faults/fault_sink.hpp"
@@ -30,9 +31,8 @@ class ResponseWatch {
   /// Behind `step`, for a joint that left its bound of following error: by the cause that its last way shows, or as
   /// `FollowingError` where it shows none.
   void name_error(double error, FaultSink& faults) const noexcept;
-  /// The joint is not under control; where its encoder puts it meanwhile.
-  void rest(double position) noexcept;
-  void rest() noexcept;
+  /// The joint is not under control; `position`: where its encoder has it meanwhile, where it tells that.
+  void rest(std::optional<double> position = std::nullopt) noexcept;
 
  private:
   static constexpr double kSampleS = 0.001, kLongSampleS = 0.01;
@@ -45,10 +45,11 @@ class ResponseWatch {
   double period_s_;
 
   bool begun_ = false;
-  double last_position_ = 0, last_way_ = 0;
-  int against_ = 0;                        ///< cycles on end
-  double gone_ = 0;                        ///< way of them
-  double first_gain_ = 0, last_gain_ = 0;  ///< of its way, in the first half of them and after it
+  double last_position_ = 0, last_way_ = 0;  ///< in the last cycle in which its drives answered
+  int cycles_ = 0;                           ///< since
+  int against_ = 0;                          ///< cycles on end
+  double gone_ = 0;                          ///< way of them
+  double first_gain_ = 0, last_gain_ = 0;    ///< of its way, in the first half of them and after it
   double error_before_ = 0;
   StandingWatch standing_;
   ErrorHistory lately_, longer_;

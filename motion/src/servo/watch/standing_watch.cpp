@@ -8,11 +8,15 @@ namespace rmac {
 namespace {
 
 constexpr double kStandsS = 0.02;
-constexpr int kStandsCycles = 5;       // which are more than answers that come late, or once not, explain
-constexpr double kStandsWay = 1;       // mm or degrees that it was to go meanwhile
-constexpr double kStandsShare = 0.25;  // of what it was to go: what blocks it gives way
-constexpr double kToAndFro = 1.5;      // of the way that is left of it
-constexpr double kLeastRange = 0.1;    // of MaxFollowingError: a path that trembles by less is none to follow
+constexpr int kStandsCycles = 5;  // which are more than answers that come late, or once not, explain
+constexpr double kStandsWay = 1;  // mm or degrees that it was to go meanwhile
+constexpr double kStretchWay = 0.1, kStretchS = 0.001;
+constexpr double kStandsShare = 0.25;  // of what it was to go, and was pushed to: what blocks it gives way
+constexpr double kDeadShare = 0.01;    // of what it was to go: by whatever it was pushed
+constexpr double kMostly = 2;
+constexpr double kHoldsIt = 0.15;    // of MaxEffort, that friction takes where it turns round
+constexpr double kToAndFro = 1.5;    // of the way that is left of it
+constexpr double kLeastRange = 0.1;  // of MaxFollowingError: a path that trembles by less is none to follow
 
 constexpr int kDigitTurns = 12;         // of the last digit: it is never quite still
 constexpr int kRests = 5;               // cycles: then it is
@@ -27,14 +31,10 @@ constexpr double kLimitWay = 0.02;  // of what MaxAcceleration makes of that tim
 
 }  // namespace
 
-void StandingWatch::rest() noexcept {
+void StandingWatch::rest(std::optional<double> position) noexcept {
   begun_ = false;
-  stands_ = at_limit_ = 0;
-}
-
-void StandingWatch::rest(double position) noexcept {
-  rest();
-  note_digits(position, 0);
+  at_limit_ = 0;
+  if (position) note_digits(*position, 0);
 }
 
 std::int64_t StandingWatch::cycles(double seconds) const noexcept {
@@ -46,14 +46,6 @@ bool StandingWatch::froze() const noexcept {
   return (turns_ >= kDigitTurns || stopped_dead_) && same_ >= std::max<std::int64_t>(3, cycles(kNoticedS));
 }
 
-void StandingWatch::begin_way(const ResponseSeen& seen) noexcept {
-  position_.begin(seen.position);
-  set_.begin(seen.position_set);
-  set_at_ = seen.position_set;
-  way_ = 0;
-  stands_ = 0;
-}
-
 void StandingWatch::step(const ResponseSeen& seen, FaultSink& faults) noexcept {
   if (!begun_) {
     begun_ = true;
@@ -62,13 +54,18 @@ void StandingWatch::step(const ResponseSeen& seen, FaultSink& faults) noexcept {
     stopped_dead_ = false;
     set_before_ = seen.position_set;
     effort_.begin(seen.effort);
-    begin_way(seen);
+    efforts_ = 0;
+    begin_rest(seen);
     return;
   }
   if (same_ == 0) set_still_ = seen.position_set;
+  constexpr double kLatelyS = 0.5;
+  const double efforts = std::min(static_cast<double>(++efforts_), kLatelyS / period_s_);
+  effort_lately_ += (seen.effort - effort_lately_) / efforts;
+  const double went = seen.position - digits_;
   if (seen.answered) note_digits(seen.position, seen.effort);
   watch_digits(seen, faults);
-  watch_way(seen, faults);
+  watch_way(seen, went, faults);
   watch_limit(seen, faults);
   set_before_ = seen.position_set;
 }
@@ -84,7 +81,10 @@ void StandingWatch::note_digits(double position, double effort) noexcept {
     effort_.add(effort);
     return;
   }
-  if (same_ > kRests) turns_ = 0;
+  if (same_ > kRests) {
+    turns_ = 0;
+    usual_ = std::max(usual_, effort_.width());
+  }
   if (step * last_step_ < 0) turns_ = std::min(turns_ + 1, kDigitTurns);
   last_step_ = step;
   same_ = 0;
@@ -97,32 +97,98 @@ void StandingWatch::watch_digits(const ResponseSeen& seen, FaultSink& faults) co
   const double changed = effort_.width() / joint_->max_effort;
   const double for_s = static_cast<double>(same_) * period_s_;
   if (froze()) {
-    if (for_s < kStandsS || changed < kFrozenEffort) return;
+    if (for_s < kStandsS || changed < std::clamp(2 * usual_ / joint_->max_effort, kFrozenEffort, kStillEffort)) return;
     raise_frozen(faults);
-  } else if (for_s >= kStillS && changed >= kStillEffort && seen.position_set != set_still_) {
-    faults.raise({ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, seen.position_set - set_at_, for_s});
+  } else if (!slips() && for_s >= kStillS && changed >= kStillEffort && seen.position_set != set_still_) {
+    faults.raise(
+        {ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, seen.position_set - set_still_, for_s});
   }
 }
 
-void StandingWatch::watch_way(const ResponseSeen& seen, FaultSink& faults) noexcept {
-  position_.add(seen.position);
-  set_.add(seen.position_set);
-  if (position_.width() > kStandsShare * set_.width()) return begin_way(seen);
-  const double step = std::abs(seen.position_set - set_before_);
-  if (step == 0 && way_ == 0) {
-    begin_way(seen);  // as it is to
-    return;
+void StandingWatch::begin_rest(const ResponseSeen& seen) noexcept {
+  went_speed_ = free_speed_ = free_at_ = 0;
+  set_rests_ = 0;
+  stretched_ = 0;
+  begin_stretch(seen);
+}
+
+void StandingWatch::begin_stretch(const ResponseSeen& seen) noexcept {
+  latest_ = (latest_ + 1) % kMostStretches;
+  stretched_ = std::min(stretched_ + 1, kMostStretches);
+  Stretch& stretch = stretches_[latest_];
+  stretch = {.from = set_before_};
+  stretch.position.begin(seen.position);
+  stretch.set.begin(set_before_);
+  stretch.free.begin(free_at_);
+}
+
+/// All its effort gives a joint MaxAcceleration at least, and mostly much more.
+void StandingWatch::push(const ResponseSeen& seen, double went) noexcept {
+  if (!(joint_->max_effort > 0)) return;
+  const double share = (seen.effort - effort_lately_) / joint_->max_effort;
+  const double free = share - std::clamp(share, -kHoldsIt, kHoldsIt);
+  constexpr double kSmoothsS = 0.01;  // a motor swings on its screw
+  went_speed_ += (went / period_s_ - went_speed_) * std::min(1.0, period_s_ / kSmoothsS);
+  // What is not pushed goes as it goes, and what is braked may well stand.
+  if (free * free_speed_ <= 0) free_speed_ = free == 0 ? went_speed_ : 0;
+  free_speed_ += kMostly * free * joint_->bounds.stop_deceleration * period_s_;
+  const double wanted = std::abs(seen.position_set - set_before_) / period_s_;
+  free_speed_ = std::clamp(free_speed_, -wanted, wanted);
+  free_at_ += free_speed_ * period_s_;
+  if (free != 0) ++stretches_[latest_].pushed;
+}
+
+StandingWatch::Stretch StandingWatch::lately(double way, std::int64_t least_cycles) const noexcept {
+  Stretch all = stretches_[latest_];
+  for (std::size_t k = 1; k < stretched_ && (all.way < way || all.cycles < least_cycles); ++k) {
+    const Stretch& before = stretches_[(latest_ + kMostStretches - k) % kMostStretches];
+    all.position.add(before.position);
+    all.set.add(before.set);
+    all.from = before.from;
+    all.way += before.way;
+    all.free.add(before.free);
+    all.cycles += before.cycles;
+    all.pushed += before.pushed;
   }
-  way_ += step;
-  ++stands_;
-  if (stands_ < std::max<std::int64_t>(kStandsCycles, cycles(kStandsS))) return;
-  if (set_.width() < kLeastRange * joint_->max_following_error) return;
-  if (way_ < kStandsWay && !seen.out_of_bound) return;
+  return all;
+}
+
+bool StandingWatch::stands(const Stretch& stretch) noexcept {
+  const bool is_pushed = 2 * stretch.pushed > stretch.cycles;
+  const double way = is_pushed ? kStandsShare * std::min(stretch.set.width(), stretch.free.width()) : 0;
+  return stretch.position.width() <= std::max(kDeadShare * stretch.set.width(), way);
+}
+
+void StandingWatch::watch_way(const ResponseSeen& seen, double went, FaultSink& faults) noexcept {
+  Stretch& latest = stretches_[latest_];
+  const double step = std::abs(seen.position_set - set_before_);
+  set_rests_ = step == 0 ? set_rests_ + 1 : 0;
+  const bool begins = stretched_ == 1 && latest.way == 0;
+  if (set_rests_ > kRests || (step == 0 && begins)) return begin_rest(seen);
+  latest.position.add(seen.position);
+  latest.set.add(seen.position_set);
+  latest.way += step;
+  push(seen, went);
+  latest.free.add(free_at_);
+  ++latest.cycles;
+  const double least_range = kLeastRange * joint_->max_following_error;
+  const bool beside = std::abs(seen.position_set - seen.position) > least_range / 4;
+  if (beside) {
+    const std::int64_t least_cycles = std::max<std::int64_t>(kStandsCycles, cycles(kStandsS));
+    const Stretch all = lately(kStandsWay, least_cycles);
+    const bool long_enough = all.cycles >= least_cycles && (all.way >= kStandsWay || seen.out_of_bound);
+    if (long_enough && all.set.width() >= least_range && stands(all)) raise_standing(all, seen, faults);
+  }
+  if (latest.way >= kStretchWay && latest.cycles >= cycles(kStretchS)) begin_stretch(seen);
+}
+
+void StandingWatch::raise_standing(const Stretch& stretch, const ResponseSeen& seen, FaultSink& faults) const noexcept {
   if (froze()) return raise_frozen(faults);
-  const double away = seen.position_set - set_at_;
-  const bool to_and_fro = way_ > kToAndFro * std::abs(away);
-  faults.raise({ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, to_and_fro ? way_ : away,
-                static_cast<double>(stands_) * period_s_});
+  if (slips()) return;
+  const double away = seen.position_set - stretch.from;
+  const bool to_and_fro = stretch.way > kToAndFro * std::abs(away);
+  faults.raise({ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, to_and_fro ? stretch.way : away,
+                static_cast<double>(stretch.cycles) * period_s_});
 }
 
 void StandingWatch::raise_frozen(FaultSink& faults) const noexcept {
@@ -133,13 +199,16 @@ void StandingWatch::raise_frozen(FaultSink& faults) const noexcept {
 void StandingWatch::watch_limit(const ResponseSeen& seen, FaultSink& faults) noexcept {
   const double acceleration = joint_->bounds.stop_deceleration;
   const bool at_limit = joint_->max_effort > 0 && std::abs(seen.effort) >= kLimit * joint_->max_effort;
-  if (!(acceleration > 0)) return;
+  if (!(acceleration > 0) || slips()) return;
   // What trembles at its limit is not at it in each cycle.
   at_limit_ = std::max<std::int64_t>(0, at_limit_ + (at_limit ? 1 : -2));
-  if (at_limit_ == 0) return pushed_.begin(seen.position);
+  if (at_limit_ == 0) {
+    set_at_limit_ = seen.position_set;
+    return pushed_.begin(seen.position);
+  }
   pushed_.add(seen.position);
   if (at_limit_ < cycles(kLimitS) || pushed_.width() > kLimitWay * acceleration * kLimitS * kLimitS / 2) return;
-  faults.raise({ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, seen.position_set - set_at_,
+  faults.raise({ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, seen.position_set - set_at_limit_,
                 static_cast<double>(at_limit_) * period_s_});
 }
 

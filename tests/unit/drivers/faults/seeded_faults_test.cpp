@@ -20,6 +20,7 @@ TEST_P(SeededFaults, AreNamedByTheirCauseAndHeld) {
     const unsigned seed = k * kBrokenCount + static_cast<unsigned>(GetParam());
     const Outcome outcome = SeededFault(machine_of(seed), GetParam(), seed).run();
     EXPECT_TRUE(outcome.right_cause) << outcome.told;
+    EXPECT_TRUE(outcome.in_time) << outcome.told;
     EXPECT_TRUE(outcome.held) << outcome.told;
   }
 }

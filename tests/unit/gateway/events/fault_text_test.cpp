@@ -66,7 +66,7 @@ TEST_F(FaultText, SaysOfALoopWhatIsWrongWithIt) {
   EXPECT_THAT(
       text(of_joint(ServoFault::Kind::EncoderFrozen, 0.02, 40)),
       HasSubstr("joint 1 (Y): its encoder tells the same to the last digit for 0.02 s, while the effort changed "
-                "by 40; check the encoder"));
+                "by 40: it froze, or its shaft is held fast; check the encoder"));
 }
 
 TEST_F(FaultText, NamesADrivesStateAsTheTopicOfDrivesDoes) {

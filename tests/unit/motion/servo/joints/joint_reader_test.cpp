@@ -69,12 +69,17 @@ TEST_F(JointReading, JumpIsTheChangeOfTheStep) {
 TEST_F(JointReading, JumpNeedsTwoPositionsOfASteadyJointBeforeIt) {
   make();
   for (const double at : {1.0, 2.0, 3.0}) read(at);
-  read(90, 0, 0b111, 0b110);
+  read(90);
   EXPECT_NEAR(reader_->jump(0), 86, 1e-12) << "it is found in the cycle in which it shows";
+  read(90, 0, 0b111, 0b110);
+  EXPECT_EQ(reader_->jump(0), 0) << "of a joint whose drive does not answer nobody knows a step";
+  EXPECT_FALSE(reader_->step(0));
   read(70);
   EXPECT_EQ(reader_->jump(0), 0);
+  EXPECT_FALSE(reader_->step(0));
   read(95);
   EXPECT_EQ(reader_->jump(0), 0);
+  EXPECT_EQ(reader_->step(0), 25);
   read(96);
   EXPECT_NEAR(reader_->jump(0), -24, 1e-12);
 }

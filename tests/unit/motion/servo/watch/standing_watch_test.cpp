@@ -39,7 +39,7 @@ TEST_F(StandingJoint, HasAFrozenEncoderWhereItsLastDigitRestsWhileTheEffortChang
 }
 
 TEST_F(StandingJoint, MayRestWithACoarseEncoderUntilItsEffortIsThatOfNoFriction) {
-  step(0, 0);
+  for (int i = 0; i < 300; ++i) step(0, 0);
   for (int i = 0; i < 400; ++i) step(0, 1e-5 * i, 0.39 * i);
   EXPECT_THAT(faults_.raised, IsEmpty()) << "a fifth of its effort";
   for (int i = 0; i < 20; ++i) step(0, 0.005, 200);
@@ -64,6 +64,7 @@ TEST_F(StandingJoint, HasAFrozenEncoderWhereItStopsDeadAtSpeed) {
 
 TEST_F(StandingJoint, IsBlockedThoughWhatBlocksItGivesWay) {
   int cycles = 0;
+  for (int i = 0; i < 300; ++i) step(0, 0);
   while (faults_.raised.empty() && cycles < 1000) {
     ++cycles;
     step(0.002 * cycles, 0.01 * cycles, 300);
@@ -75,6 +76,7 @@ TEST_F(StandingJoint, IsBlockedThoughWhatBlocksItGivesWay) {
 
 TEST_F(StandingJoint, IsBlockedOnAWayToAndFroThatIsNoMillimetreLong) {
   double way = 0, before = 0;
+  for (int i = 0; i < 300; ++i) step(0, 0);
   for (int i = 0; i < 5000 && faults_.raised.empty(); ++i) {
     const double set = 0.2 * std::sin(0.02 * i);
     way += std::abs(set - std::exchange(before, set));
@@ -94,6 +96,43 @@ TEST_F(StandingJoint, IsBlockedWhereAllItsEffortForATenthOfASecondComesToNothing
   EXPECT_NEAR(cycles, 100, 3);
   ASSERT_FALSE(faults_.raised.empty());
   EXPECT_EQ(faults_.raised[0].kind, Kind::StandsStill);
+}
+
+// As with `rmac load --soften 8` on a joint that is heavier than it is said to be.
+TEST_F(StandingJoint, MayBeSlowToFollowWhereItsLoopIsSoft) {
+  double position = 0, velocity = 0, largest = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double t = std::max(0, i - 10) * 1e-3, speed = std::min(1000 * t, 50.0);
+    const double set = t < 0.05 ? 500 * t * t : 1.25 + 50 * (t - 0.05);
+    const double effort = 26 * (set - position) + 0.42 * (speed - velocity);
+    velocity += effort / 0.105 * 1e-3;
+    position += velocity * 1e-3;
+    largest = std::max(largest, set - position);
+    step(position, set, effort);
+  }
+  EXPECT_THAT(faults_.raised, IsEmpty());
+  EXPECT_GT(largest, 1);
+}
+
+// It goes by a digit in a third of a second, and its motor cogs.
+TEST_F(StandingJoint, MayCreepFromDigitToDigitOfACoarseEncoder) {
+  for (int i = 0; i < 20'000; ++i) {
+    const double set = 16e-6 * i, noise = 4e-4 * std::sin(1.7 * i);
+    step(5e-3 * std::round((set + noise) / 5e-3), set, 30 * std::sin(2e-3 * i));
+  }
+  EXPECT_THAT(faults_.raised, IsEmpty());
+}
+
+// What slips is under velocity control, and makes nothing good that kept it from going.
+TEST_F(StandingJoint, MaySlipUnderVelocityControlButNotWithAFrozenEncoder) {
+  joint_.method = ControlMethod::Velocity;
+  for (int i = 0; i < 2000; ++i) step(0, std::min(0.01 * i, 0.25), std::min(4.0 * i, 800.0));
+  EXPECT_THAT(faults_.raised, IsEmpty());
+  watch_.rest();
+  rest_restlessly(30);
+  for (int i = 0; i < 100; ++i) step(0, std::min(0.01 * i, 0.25), 4.0 * i);
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_EQ(faults_.raised[0].kind, Kind::EncoderFrozen);
 }
 
 TEST_F(StandingJoint, MaySpeedUpWithAllItsEffort) {
