@@ -233,7 +233,8 @@ JointSeen ServoLoop::Impl::seen(std::size_t joint) const noexcept {
   const bool unbelieved = positions.jump(joint) != 0;
   return {.position = {.jump = unbelieved ? positions.jump(joint) : joints.jump(joint),
                        .step = joints.step(joint),
-                       .may_stop = !unbelieved && joints.may_stop(joint)},
+                       .may_stop = joints.may_stop(joint),
+                       .refused = unbelieved},
           .answered = has(answered, joint),
           .velocity = joints.velocity()[joint],
           .following_error = setpoints.position()[joint] - setpoints.gone_on(joint) - joints.position()[joint],
@@ -256,6 +257,7 @@ void ServoLoop::Impl::watch_motion(const ServoCommand& command) noexcept {
   for (std::size_t j = 0; j < wiring.joints(); ++j) {
     if (state.powered() && live[j]) {
       motion_watch.joint(j).step(seen(j), state);
+      positions.doubt_place(j, motion_watch.joint(j).doubts_position());
     } else {
       motion_watch.joint(j).rest(has(answered, j) ? std::optional(joints.position()[j]) : std::nullopt);
     }

@@ -12,8 +12,8 @@ class ShaftReader {
  public:
   ShaftReader(const DriveScale& scale, double period_s) noexcept : scale_(scale), period_s_(period_s) {}
 
-  /// The words of this cycle. Where an answer is missing, the shaft goes on at its speed, for three cycles at most;
-  /// while the drive does not answer at all, it is taken to stand.
+  /// The words of this cycle. Where an answer is missing, the shaft goes on at its speed for three cycles, and then is
+  /// taken to stand where it got to; while the drive does not answer at all, where it was.
   void read(const DriveFeedback& words) noexcept;
   /// What was read in this cycle is not believed: the shaft stands where it was.
   void refuse() noexcept;

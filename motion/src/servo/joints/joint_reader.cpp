@@ -1,6 +1,7 @@
 #include "servo/joints/joint_reader.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "rmac/motion/servo/pitch_error.hpp"
 
@@ -8,8 +9,8 @@ namespace rmac {
 
 namespace {
 
-/// What a joint comes back with from what stopped it is less than it came with, so many cycles ago.
-constexpr double kFades = 0.95;
+/// What a joint comes back with from what stopped it is less than it came with, so long ago.
+constexpr double kFadesS = 0.02;
 
 }  // namespace
 
@@ -44,7 +45,8 @@ void JointReader::read_jump(std::size_t joint, double shown, bool steady) noexce
   jump_[joint] = steady && shown_history_[joint] == 2 ? shown - 2 * shown1_[joint] + shown2_[joint] : 0;
   const double step = std::abs(shown - shown1_[joint]);
   may_stop_[joint] = step <= fastest_[joint] + joints_[joint].bounds.jump / 2;
-  fastest_[joint] = shown_history_[joint] == 0 ? 0 : std::max(step, kFades * fastest_[joint]);
+  const double faded = std::exp(-period_s_ / kFadesS) * fastest_[joint];
+  fastest_[joint] = shown_history_[joint] == 0 ? faded : std::max(step, faded);
   shown2_[joint] = shown1_[joint];
   shown1_[joint] = shown;
   shown_history_[joint] = steady ? static_cast<std::uint8_t>(std::min(shown_history_[joint] + 1, 2)) : std::uint8_t{0};

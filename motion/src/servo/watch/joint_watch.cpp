@@ -12,6 +12,7 @@ void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
   const JointBounds& bounds = joint_->bounds;
   JumpSeen jump = seen.position;
   jump.trembles = oscillation_.trembles();
+  jump.shakes = oscillation_.shakes();
   jumps_.step(jump, faults);
   watch_sensor(faults);
   if (seen.bounces) {

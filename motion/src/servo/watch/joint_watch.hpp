@@ -40,6 +40,7 @@ class JointWatch {
         response_(joint, index, period_s) {}
 
   void step(const JointSeen& seen, FaultSink& faults) noexcept;
+  [[nodiscard]] bool doubts_position() const noexcept { return jumps_.doubts(); }
   /// The joint is not under control; `position`: where its encoder has it meanwhile, where it tells that.
   void rest(std::optional<double> position = std::nullopt) noexcept {
     too_fast_.restart();

@@ -36,6 +36,8 @@ class OscillationWatch {
   [[nodiscard]] bool swings() const noexcept { return turned_ >= kTurns - 2 + 2 * path_turned_; }
   /// The effort turned round some times more than the path explains.
   [[nodiscard]] bool trembles() const noexcept { return chain_ >= 3 + 2 * path_chain_; }
+  /// And by half of all that it may be, peak to peak.
+  [[nodiscard]] bool shakes() const noexcept { return trembles() && turns_.swing() > joint_->max_effort / 2; }
   void raise(FaultSink& faults) const noexcept;
   /// The joint is not under control.
   void rest() noexcept;

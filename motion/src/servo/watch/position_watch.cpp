@@ -258,7 +258,7 @@ void PositionWatch::engaged(std::size_t joint) noexcept {
 }
 
 void PositionWatch::forgive(const ServoFault& fault) noexcept {
-  IndexSet without = displaced_joints_;
+  IndexSet without = displaced_joints_ | std::exchange(suspected_, 0);
   if (fault.part == ServoFault::Part::Joint &&
       (fault.kind == ServoFault::Kind::EncoderJump || fault.kind == ServoFault::Kind::EncoderFrozen ||
        fault.kind == ServoFault::Kind::Displaced)) {

@@ -61,6 +61,11 @@ class PositionWatch {
                   FaultSink& faults) noexcept;
   /// This joint is under control from now on.
   void engaged(std::size_t joint) noexcept;
+  /// Whether the position of this joint jumped, or may have: where it is stopped so, whatever for, its reference is to
+  /// be found again.
+  void doubt_place(std::size_t joint, bool doubtful) noexcept {
+    suspected_ = doubtful ? suspected_ | only(joint) : suspected_ & ~only(joint);
+  }
   /// A reset left this fault: joints that were displaced, or jumped, count where they are, without their reference.
   void forgive(const ServoFault& fault) noexcept;
   /// Joints whose reference is to be found again.
@@ -121,6 +126,7 @@ class PositionWatch {
   IndexSet referenced_ = 0;
   // Joints
   IndexSet jumped_ = 0, displaced_joints_ = 0, lost_ = 0;
+  IndexSet suspected_ = 0;  ///< as they came out of control
   std::array<Place, kMaxJoints> joints_{};
 };
 

@@ -10,6 +10,7 @@ namespace {
 constexpr double kStandsS = 0.02;
 constexpr int kStandsCycles = 5;  // which are more than answers that come late, or once not, explain
 constexpr double kStandsWay = 1;  // mm or degrees that it was to go meanwhile
+constexpr double kOfBound = 0.8;  // of MaxFollowingError: what it was to go where it left that sooner
 constexpr double kStretchWay = 0.1, kStretchS = 0.001;
 constexpr double kStandsShare = 0.25;  // of what it was to go, and was pushed to: what blocks it gives way
 constexpr double kDeadShare = 0.01;    // of what it was to go: by whatever it was pushed
@@ -18,8 +19,9 @@ constexpr double kHoldsIt = 0.15;    // of MaxEffort, that friction takes where 
 constexpr double kToAndFro = 1.5;    // of the way that is left of it
 constexpr double kLeastRange = 0.1;  // of MaxFollowingError: a path that trembles by less is none to follow
 
-constexpr int kDigitTurns = 12;         // of the last digit: it is never quite still
-constexpr int kRests = 5;               // cycles: then it is
+constexpr int kDigitTurns = 12;  // of the last digit: it is never quite still
+constexpr int kRestsCycles = 5;  // then it is
+constexpr double kRestsS = 0.005;
 constexpr double kDeadStop = 10;        // of MaxAcceleration within a cycle: no brake and no wall does that
 constexpr double kFrozenEffort = 0.03;  // of MaxEffort, by which it changes meanwhile
 constexpr double kStillS = 0.1;         // of an encoder whose last digit may rest, as a coarse one's
@@ -34,7 +36,11 @@ constexpr double kLimitWay = 0.02;  // of what MaxAcceleration makes of that tim
 void StandingWatch::rest(std::optional<double> position) noexcept {
   begun_ = false;
   at_limit_ = 0;
-  if (position) note_digits(*position, 0);
+  if (position) {
+    note_digits(*position, 0);
+  } else {
+    digits_.reset();
+  }
 }
 
 std::int64_t StandingWatch::cycles(double seconds) const noexcept {
@@ -50,8 +56,11 @@ void StandingWatch::step(const ResponseSeen& seen, FaultSink& faults) noexcept {
   if (!begun_) {
     begun_ = true;
     digits_ = seen.position;
-    same_ = 0;
+    same_ = fast_ = 0;
+    last_step_ = 0;
     stopped_dead_ = false;
+    at_limit_ = 0;
+    begin_limit(seen);
     set_before_ = seen.position_set;
     effort_.begin(seen.effort);
     efforts_ = 0;
@@ -62,7 +71,7 @@ void StandingWatch::step(const ResponseSeen& seen, FaultSink& faults) noexcept {
   constexpr double kLatelyS = 0.5;
   const double efforts = std::min(static_cast<double>(++efforts_), kLatelyS / period_s_);
   effort_lately_ += (seen.effort - effort_lately_) / efforts;
-  const double went = seen.position - digits_;
+  const double went = digits_ ? seen.position - *digits_ : 0;
   if (seen.answered) note_digits(seen.position, seen.effort);
   watch_digits(seen, faults);
   watch_way(seen, went, faults);
@@ -71,25 +80,33 @@ void StandingWatch::step(const ResponseSeen& seen, FaultSink& faults) noexcept {
 }
 
 void StandingWatch::note_digits(double position, double effort) noexcept {
-  const double step = position - digits_;
+  const double step = digits_ ? position - *digits_ : 0;
   digits_ = position;
   if (step == 0) {
-    const double acceleration = joint_->bounds.stop_deceleration;
-    if (same_++ == 0) {
-      stopped_dead_ = acceleration > 0 && std::abs(last_step_) > kDeadStop * acceleration * period_s_ * period_s_;
-    }
+    if (same_++ == 0) stopped_dead_ = fast_ > 1;
+    fast_ = 0;
     effort_.add(effort);
     return;
   }
-  if (same_ > kRests) {
+  if (same_ > std::max<std::int64_t>(kRestsCycles, cycles(kRestsS))) {
     turns_ = 0;
     usual_ = std::max(usual_, effort_.width());
   }
-  if (step * last_step_ < 0) turns_ = std::min(turns_ + 1, kDigitTurns);
-  last_step_ = step;
+  note_step(step);
   same_ = 0;
   stopped_dead_ = false;
   effort_.begin(effort);
+}
+
+void StandingWatch::note_step(double step) noexcept {
+  constexpr double kNone = 1e-9;  // what a transmission rounds
+  constexpr double kFastDigits = 5;
+  if (std::abs(step) > kNone) digit_ = digit_ > 0 ? std::min(digit_, std::abs(step)) : std::abs(step);
+  if (step * last_step_ < 0) turns_ = std::min(turns_ + 1, kDigitTurns);
+  const double speed = kDeadStop * joint_->bounds.stop_deceleration * period_s_ * period_s_;
+  const bool fast = speed > 0 && std::abs(step) > std::max(speed, kFastDigits * digit_) && step * last_step_ > 0;
+  fast_ = fast ? std::min(fast_ + 1, 2) : 0;
+  last_step_ = step;
 }
 
 void StandingWatch::watch_digits(const ResponseSeen& seen, FaultSink& faults) const noexcept {
@@ -99,7 +116,8 @@ void StandingWatch::watch_digits(const ResponseSeen& seen, FaultSink& faults) co
   if (froze()) {
     if (for_s < kStandsS || changed < std::clamp(2 * usual_ / joint_->max_effort, kFrozenEffort, kStillEffort)) return;
     raise_frozen(faults);
-  } else if (!slips() && for_s >= kStillS && changed >= kStillEffort && seen.position_set != set_still_) {
+  } else if (!slips() && for_s >= kStillS && changed >= kStillEffort &&
+             std::abs(seen.position_set - set_still_) > 2 * digit_) {
     faults.raise(
         {ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, seen.position_set - set_still_, for_s});
   }
@@ -164,7 +182,7 @@ void StandingWatch::watch_way(const ResponseSeen& seen, double went, FaultSink& 
   const double step = std::abs(seen.position_set - set_before_);
   set_rests_ = step == 0 ? set_rests_ + 1 : 0;
   const bool begins = stretched_ == 1 && latest.way == 0;
-  if (set_rests_ > kRests || (step == 0 && begins)) return begin_rest(seen);
+  if (set_rests_ > kRestsCycles || (step == 0 && begins)) return begin_rest(seen);
   latest.position.add(seen.position);
   latest.set.add(seen.position_set);
   latest.way += step;
@@ -175,8 +193,9 @@ void StandingWatch::watch_way(const ResponseSeen& seen, double went, FaultSink& 
   const bool beside = std::abs(seen.position_set - seen.position) > least_range / 4;
   if (beside) {
     const std::int64_t least_cycles = std::max<std::int64_t>(kStandsCycles, cycles(kStandsS));
-    const Stretch all = lately(kStandsWay, least_cycles);
-    const bool long_enough = all.cycles >= least_cycles && (all.way >= kStandsWay || seen.out_of_bound);
+    const double way = seen.out_of_bound ? std::min(kStandsWay, kOfBound * joint_->max_following_error) : kStandsWay;
+    const Stretch all = lately(way, least_cycles);
+    const bool long_enough = all.cycles >= least_cycles && all.way >= way;
     if (long_enough && all.set.width() >= least_range && stands(all)) raise_standing(all, seen, faults);
   }
   if (latest.way >= kStretchWay && latest.cycles >= cycles(kStretchS)) begin_stretch(seen);
@@ -196,18 +215,24 @@ void StandingWatch::raise_frozen(FaultSink& faults) const noexcept {
                 static_cast<double>(same_) * period_s_, effort_.width()});
 }
 
+void StandingWatch::begin_limit(const ResponseSeen& seen) noexcept {
+  set_at_limit_ = seen.position_set;
+  pushed_.begin(seen.position);
+}
+
 void StandingWatch::watch_limit(const ResponseSeen& seen, FaultSink& faults) noexcept {
   const double acceleration = joint_->bounds.stop_deceleration;
   const bool at_limit = joint_->max_effort > 0 && std::abs(seen.effort) >= kLimit * joint_->max_effort;
   if (!(acceleration > 0) || slips()) return;
   // What trembles at its limit is not at it in each cycle.
   at_limit_ = std::max<std::int64_t>(0, at_limit_ + (at_limit ? 1 : -2));
-  if (at_limit_ == 0) {
-    set_at_limit_ = seen.position_set;
-    return pushed_.begin(seen.position);
-  }
+  if (at_limit_ == 0) return begin_limit(seen);
   pushed_.add(seen.position);
-  if (at_limit_ < cycles(kLimitS) || pushed_.width() > kLimitWay * acceleration * kLimitS * kLimitS / 2) return;
+  if (at_limit_ < cycles(kLimitS)) return;
+  if (pushed_.width() > kLimitWay * acceleration * kLimitS * kLimitS / 2) {
+    at_limit_ = 1;
+    return begin_limit(seen);
+  }
   faults.raise({ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, seen.position_set - set_at_limit_,
                 static_cast<double>(at_limit_) * period_s_});
 }

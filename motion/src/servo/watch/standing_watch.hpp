@@ -58,9 +58,11 @@ class StandingWatch {
   };
 
   void note_digits(double position, double effort) noexcept;
+  void note_step(double step) noexcept;
   void watch_digits(const ResponseSeen& seen, FaultSink& faults) const noexcept;
   void watch_way(const ResponseSeen& seen, double went, FaultSink& faults) noexcept;
   void watch_limit(const ResponseSeen& seen, FaultSink& faults) noexcept;
+  void begin_limit(const ResponseSeen& seen) noexcept;
   void begin_rest(const ResponseSeen& seen) noexcept;
   void begin_stretch(const ResponseSeen& seen) noexcept;
   void push(const ResponseSeen& seen, double went) noexcept;
@@ -78,14 +80,16 @@ class StandingWatch {
   bool begun_ = false;
 
   // The encoder's last digit.
-  int turns_ = 0;              ///< in which its steps turned round, without a rest
-  bool stopped_dead_ = false;  ///< from a speed that nothing takes away within a cycle
-  double last_step_ = 0;       ///< that was none of 0
-  double digits_ = 0;          ///< position in the cycle before
-  std::int64_t same_ = 0;      ///< cycles on end
-  double set_still_ = 0;       ///< where it was to be when they began
-  Range effort_{};             ///< of them
-  double usual_ = 0;           ///< by which the effort changed while others lasted that ended: a digit is so coarse
+  int turns_ = 0;                   ///< in which its steps turned round, without a rest
+  bool stopped_dead_ = false;       ///< from a speed that nothing takes away within a cycle
+  int fast_ = 0;                    ///< cycles on end at such a speed
+  double last_step_ = 0;            ///< that was none of 0
+  double digit_ = 0;                ///< the least of them; 0: there was none
+  std::optional<double> digits_{};  ///< position in the cycle before, where it was told
+  std::int64_t same_ = 0;           ///< cycles on end
+  double set_still_ = 0;            ///< where it was to be when they began
+  Range effort_{};                  ///< of them
+  double usual_ = 0;  ///< by which the effort changed while others lasted that ended: a digit is so coarse
 
   // The way that the joint was to go lately.
   static constexpr std::size_t kMostStretches = 24;

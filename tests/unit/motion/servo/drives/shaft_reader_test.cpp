@@ -63,10 +63,27 @@ TEST_F(ShaftReading, GoesOnAtItsSpeedWhereAnAnswerIsMissing) {
   EXPECT_EQ(reader_.counts(), 60);
 }
 
-TEST_F(ShaftReading, StandsAfterThreeCyclesWithoutAnAnswer) {
+TEST_F(ShaftReading, StandsWhereItGotToAfterThreeCyclesWithoutAnAnswer) {
   for (const int counts : {0, 10, 20}) read(counts);
   for (int i = 0; i < 5; ++i) reader_.read({.position_counts = 20, .online = true, .missed = true});
+  EXPECT_NEAR(reader_.rad(), (50 - 200) * kRadPerCount, 1e-9);
+  EXPECT_EQ(reader_.rad_s(), 0);
+  read(80);
+  EXPECT_NEAR(reader_.rad(), (80 - 200) * kRadPerCount, 1e-9);
+  EXPECT_EQ(reader_.rad_s(), 0) << "its velocity begins anew";
+  read(90);
+  EXPECT_NEAR(reader_.rad_s(), 10 * kRadPerCount / kPeriod, 1e-9);
+}
+
+TEST_F(ShaftReading, IsRefusedToItsLastAnswer) {
+  for (const int counts : {0, 10, 20}) read(counts);
+  reader_.read({.position_counts = 20, .online = true, .missed = true});
+  reader_.refuse();
   EXPECT_NEAR(reader_.rad(), (20 - 200) * kRadPerCount, 1e-9);
+  reader_.take_over((std::int64_t{1} << 32) + 500, true);
+  reader_.read({.position_counts = 500, .online = true, .missed = true});
+  reader_.refuse();
+  EXPECT_EQ(reader_.counts(), (std::int64_t{1} << 32) + 500);
 }
 
 // Otherwise a loop would be told that it stands, and then that it is three times as fast.

@@ -84,6 +84,33 @@ TEST_F(JointReading, JumpNeedsTwoPositionsOfASteadyJointBeforeIt) {
   EXPECT_NEAR(reader_->jump(0), -24, 1e-12);
 }
 
+TEST_F(JointReading, AStopIsNoFasterThanItWasLately) {
+  make();
+  double at = 0;
+  const auto go = [&](double step) { read(at += step); };
+  for (int i = 0; i < 5; ++i) go(1);
+  for (const double step : {0.0, -0.5, -0.7, 0.2}) {
+    go(step);
+    EXPECT_TRUE(reader_->may_stop(0)) << step;
+  }
+  go(-1.2);
+  EXPECT_FALSE(reader_->may_stop(0)) << "it came with less";
+  for (int i = 0; i < 100; ++i) go(0);
+  go(0.1);
+  EXPECT_FALSE(reader_->may_stop(0)) << "long ago";
+}
+
+TEST_F(JointReading, ALateCyclesStepIsNone) {
+  make();
+  for (const double at : {1.0, 2.0, 3.0}) read(at);
+  reader_->forget_steps();
+  read(5);
+  EXPECT_EQ(reader_->jump(0), 0);
+  EXPECT_FALSE(reader_->step(0));
+  read(6);
+  EXPECT_EQ(reader_->step(0), 1);
+}
+
 TEST_F(JointReading, ForceIsCountsFromZeroInTheSensorsSense) {
   make();
   bus_->feedback[1].sensor_counts = 30;

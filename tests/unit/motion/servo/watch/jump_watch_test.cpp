@@ -60,6 +60,37 @@ TEST_F(ReadPosition, JumpsWhereItGoesOnAsBefore) {
   }
 }
 
+// Each edge of a spike is a jump, and no joint is so fast.
+TEST_F(ReadPosition, JumpsThereAndBack) {
+  read({0.3, 0.3, -0.2, 0.8, 0.3});
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_NEAR(faults_.raised[0].value, 1, 1e-12);
+}
+
+TEST_F(ReadPosition, JumpsWhileItTremblesWhereItIsFasterThanBeforeOrNotBelieved) {
+  watch_.step({.jump = -0.3, .step = 0.1, .may_stop = true, .trembles = true}, faults_);
+  EXPECT_THAT(faults_.raised, IsEmpty()) << "a motor on its spring";
+  watch_.step({.jump = 0.2, .step = 0.3, .may_stop = false, .trembles = true}, faults_);
+  EXPECT_THAT(faults_.raised, SizeIs(1));
+  watch_.rest();
+  watch_.step({.jump = 0.05, .may_stop = true, .trembles = true, .refused = true}, faults_);
+  EXPECT_THAT(faults_.raised, SizeIs(2));
+}
+
+TEST_F(ReadPosition, IsInDoubtFromAJumpThatMayBeAStopUntilThatIsClear) {
+  EXPECT_FALSE(watch_.doubts());
+  watch_.step({.jump = -0.3, .step = 0, .may_stop = true}, faults_);
+  EXPECT_TRUE(watch_.doubts());
+  watch_.step({.step = 0, .may_stop = true}, faults_);
+  watch_.step({.step = 0, .may_stop = true}, faults_);
+  EXPECT_FALSE(watch_.doubts()) << "it stopped";
+  watch_.step({.jump = 0.3, .step = 0.3}, faults_);
+  watch_.step({.step = 0.3}, faults_);
+  EXPECT_TRUE(watch_.doubts()) << "it jumped";
+  watch_.rest();
+  EXPECT_FALSE(watch_.doubts());
+}
+
 TEST_F(ReadPosition, TellsNothingWhereItsDriveDoesNotAnswer) {
   read({0.3, 0.3, {}, 0.31, 0.3, {}, {}, 0.28});
   EXPECT_THAT(faults_.raised, IsEmpty());

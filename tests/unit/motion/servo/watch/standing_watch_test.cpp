@@ -47,6 +47,30 @@ TEST_F(StandingJoint, MayRestWithACoarseEncoderUntilItsEffortIsThatOfNoFriction)
   EXPECT_EQ(faults_.raised[0].kind, Kind::StandsStill);
 }
 
+TEST_F(StandingJoint, ForgetsWhereItsCounterWasBeforeItWasUnderControl) {
+  watch_.rest(5);
+  watch_.rest(0);
+  step(0, 0);
+  for (int i = 0; i < 400; ++i) step(0, 1e-5 * i, 0.39 * i);
+  EXPECT_THAT(faults_.raised, IsEmpty());
+}
+
+TEST_F(StandingJoint, IsNotStoppedByOneDigitHoweverShortTheCycle) {
+  StandingWatch quick(joint_, 4, 0.00025);
+  const auto look = [&](double position, double effort) {
+    quick.step({.effort = effort, .position = position, .position_set = 0}, faults_);
+  };
+  for (int i = 0; i < 100; ++i) look(1e-3 * (i / 20), 0);
+  for (int i = 0; i < 200; ++i) look(4e-3, 0.3 * i);
+  EXPECT_THAT(faults_.raised, IsEmpty());
+}
+
+TEST_F(StandingJoint, MayBePushedWhileItIsToGoByLessThanADigit) {
+  for (const double position : {0.0, 0.001, 0.0}) step(position, 0);
+  for (int i = 0; i < 200; ++i) step(0, 1e-6 * i, i < 100 ? 0 : 170);
+  EXPECT_THAT(faults_.raised, IsEmpty());
+}
+
 // A push that grows is held without an error that grows: nothing moves.
 TEST_F(StandingJoint, MayBePushedAtRestWithACoarseEncoder) {
   for (int i = 0; i < 400; ++i) step(0, 0, 1.9 * i);
@@ -54,6 +78,7 @@ TEST_F(StandingJoint, MayBePushedAtRestWithACoarseEncoder) {
 }
 
 TEST_F(StandingJoint, HasAFrozenEncoderWhereItStopsDeadAtSpeed) {
+  for (const double position : {0.0, 1e-4, 0.0}) step(position, 0);
   for (int i = 0; i < 20; ++i) step(0.05 * i, 0.05 * i);
   EXPECT_FALSE(watch_.froze());
   for (int i = 0; i < 4; ++i) step(0.05 * 19, 1);
@@ -133,6 +158,15 @@ TEST_F(StandingJoint, MaySlipUnderVelocityControlButNotWithAFrozenEncoder) {
   for (int i = 0; i < 100; ++i) step(0, std::min(0.01 * i, 0.25), 4.0 * i);
   ASSERT_FALSE(faults_.raised.empty());
   EXPECT_EQ(faults_.raised[0].kind, Kind::EncoderFrozen);
+}
+
+TEST_F(StandingJoint, IsBlockedAfterItSpedUpWithAllItsEffort) {
+  double at = 0;
+  for (int i = 0; i < 200; ++i) step(at = 5e-4 * i * i, 5e-4 * i * i, 800);
+  EXPECT_THAT(faults_.raised, IsEmpty());
+  int cycles = 0;
+  while (faults_.raised.empty() && cycles < 1000) step(at + (++cycles % 2 == 0 ? 0 : 1e-4), at + 1e-4, 800);
+  EXPECT_LE(cycles, 202) << "a tenth of a second of its own";
 }
 
 TEST_F(StandingJoint, MaySpeedUpWithAllItsEffort) {
