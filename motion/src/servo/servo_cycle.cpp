@@ -24,7 +24,6 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
       spindles(parts.spindles, parts.period_s, state),
       rest(parts.actuators.size() + parts.spindles.size(), parts.period_s),
       torques(*parts.actuator_map, parts.actuators, parts.period_s),
-      late_answers(wiring.actuator_delays()),
       aims(parts.actuators, wiring.actuator_delays(), parts.period_s) {
   if (parts.virtual_mode) joints.reflect(setpoints.position(), setpoints.velocity());
 }
@@ -100,21 +99,11 @@ const DriveFeedback& ServoLoop::Impl::told(std::size_t actuator) const noexcept 
   return part.bus->feedback[part.axis];
 }
 
-IndexSet ServoLoop::Impl::answering() const noexcept {
-  IndexSet silent = 0;
-  for (std::size_t i = 0; i < wiring.actuators(); ++i) {
-    if (!told(i).online || told(i).missed) silent |= only(i);
-  }
-  return silent == 0 ? ~IndexSet{0} : ~wiring.joints_of(silent);
-}
-
-void ServoLoop::Impl::read(std::uint64_t late) noexcept {
+void ServoLoop::Impl::read(std::uint64_t missed) noexcept {
   shafts.read();
-  late = late_answers.step(late);
-  positions.step(shafts, joints.velocity(), late);
-  if (late > 0) joints.forget_steps();
-  answered = answering();
-  joints.read(shafts.rad(), shafts.rad_s(), live.all(), live.all() & answered, setpoints.velocity());
+  positions.step(shafts, joints.velocity(), missed);
+  if (positions.late()) joints.forget_steps();
+  joints.read(shafts.rad(), shafts.rad_s(), live.all(), live.all() & positions.answered(), setpoints.velocity());
   spindles.read();
 }
 
@@ -235,7 +224,7 @@ JointSeen ServoLoop::Impl::seen(std::size_t joint) const noexcept {
                        .step = joints.step(joint),
                        .may_stop = joints.may_stop(joint),
                        .refused = unbelieved},
-          .answered = has(answered, joint),
+          .answered = has(positions.answered(), joint),
           .velocity = joints.velocity()[joint],
           .following_error = setpoints.position()[joint] - setpoints.gone_on(joint) - joints.position()[joint],
           .position_set = setpoints.position()[joint],
@@ -259,7 +248,7 @@ void ServoLoop::Impl::watch_motion(const ServoCommand& command) noexcept {
       motion_watch.joint(j).step(seen(j), state);
       positions.doubt_place(j, motion_watch.joint(j).doubts_position());
     } else {
-      motion_watch.joint(j).rest(has(answered, j) ? std::optional(joints.position()[j]) : std::nullopt);
+      motion_watch.joint(j).rest(has(positions.answered(), j) ? std::optional(joints.position()[j]) : std::nullopt);
     }
   }
   if (state.powered()) {

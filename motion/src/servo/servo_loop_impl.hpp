@@ -23,7 +23,6 @@
 #include "servo/spindles/spindles.hpp"
 #include "servo/state/loop_state.hpp"
 #include "servo/stop/rest_watch.hpp"
-#include "servo/joints/late_answers.hpp"
 #include "servo/watch/deadline_watch.hpp"
 #include "servo/watch/input_watch.hpp"
 #include "servo/watch/motion_watch.hpp"
@@ -43,8 +42,8 @@ struct ServoLoop::Impl {
   // The steps of a cycle, in their order.
   void receive(const ServoCommand& command) noexcept;
   void obey(const ServoCommand& command) noexcept;
-  /// `late`: cycles that were missed before this one.
-  void read(std::uint64_t late) noexcept;
+  /// `missed`: cycles that were left out before this one.
+  void read(std::uint64_t missed) noexcept;
   void watch_drives(const ServoCommand& command) noexcept;
   void finish_reset() noexcept;
   void run_homing(const ServoCommand& command) noexcept;
@@ -63,7 +62,6 @@ struct ServoLoop::Impl {
   void take_over_joints(IndexSet live_drives, std::span<const double> shaft_set) noexcept;
 
   [[nodiscard]] const DriveFeedback& told(std::size_t actuator) const noexcept;
-  [[nodiscard]] IndexSet answering() const noexcept;
   [[nodiscard]] bool operable(std::size_t joint) const noexcept;
   [[nodiscard]] IndexSet controlled() const noexcept;
   [[nodiscard]] ServoInput input(std::size_t joint) const noexcept;
@@ -91,9 +89,7 @@ struct ServoLoop::Impl {
   Spindles spindles;
   RestWatch rest;
   ShaftTorques torques;
-  LateAnswers late_answers;
   ShaftAims aims;
-  IndexSet answered = 0;  ///< joints whose drives answered in this cycle
 };
 
 }  // namespace rmac

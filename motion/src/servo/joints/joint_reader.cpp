@@ -39,17 +39,18 @@ void JointReader::read(std::span<const double> shafts, std::span<const double> s
   efforts_.read(positions());
 }
 
-void JointReader::read_jump(std::size_t joint, double shown, bool steady) noexcept {
-  step_[joint].reset();
-  if (shown_history_[joint] > 0 && steady) step_[joint] = shown - shown1_[joint];
-  jump_[joint] = steady && shown_history_[joint] == 2 ? shown - 2 * shown1_[joint] + shown2_[joint] : 0;
-  const double step = std::abs(shown - shown1_[joint]);
-  may_stop_[joint] = step <= fastest_[joint] + joints_[joint].bounds.jump / 2;
-  const double faded = std::exp(-period_s_ / kFadesS) * fastest_[joint];
-  fastest_[joint] = shown_history_[joint] == 0 ? faded : std::max(step, faded);
-  shown2_[joint] = shown1_[joint];
-  shown1_[joint] = shown;
-  shown_history_[joint] = steady ? static_cast<std::uint8_t>(std::min(shown_history_[joint] + 1, 2)) : std::uint8_t{0};
+void JointReader::read_jump(std::size_t joint, double position, bool steady) noexcept {
+  Shown& shown = shown_[joint];
+  const double step = position - shown.last;
+  shown.step.reset();
+  if (shown.history > 0 && steady) shown.step = step;
+  shown.jump = steady && shown.history == 2 ? step - (shown.last - shown.before) : 0;
+  shown.may_stop = std::abs(step) <= shown.fastest + joints_[joint].bounds.jump / 2;
+  shown.fastest *= std::exp(-period_s_ / kFadesS);
+  if (shown.history > 0) shown.fastest = std::max(shown.fastest, std::abs(step));
+  shown.before = shown.last;
+  shown.last = position;
+  shown.history = steady ? static_cast<std::uint8_t>(std::min(shown.history + 1, 2)) : std::uint8_t{0};
 }
 
 void JointReader::reflect(std::span<const double> position_set, std::span<const double> velocity_set) noexcept {

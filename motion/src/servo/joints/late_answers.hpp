@@ -16,13 +16,14 @@ class LateAnswers {
   }
 
   /// One cycle, and those that were missed before it.
-  [[nodiscard]] std::uint64_t step(std::uint64_t missed) noexcept {
+  void step(std::uint64_t missed) noexcept {
+    left_ = std::max(0, left_ - 1);
     if (missed > 0) {
       missed_ = std::max(missed, left_ > 0 ? missed_ : 0);
       left_ = longest_ + 1;
     }
-    return left_ > 0 ? (--left_, missed_) : 0;
   }
+  [[nodiscard]] std::uint64_t now() const noexcept { return left_ > 0 ? missed_ : 0; }
 
  private:
   int longest_ = 0;

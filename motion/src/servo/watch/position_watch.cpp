@@ -22,7 +22,8 @@ constexpr double kFades = 0.9;
 
 }  // namespace
 
-PositionWatch::PositionWatch(const ServoLoopParts& parts, const Wiring& wiring) : parts_(parts), wiring_(wiring) {
+PositionWatch::PositionWatch(const ServoLoopParts& parts, const Wiring& wiring)
+    : parts_(parts), wiring_(wiring), late_answers_(wiring.actuator_delays()) {
   doubtful_ = unsettled_ = first(wiring_.actuators());
   for (std::size_t i = 0; i < wiring_.actuators(); ++i) {
     if (parts_.actuators[i].homing_turn == 0) referenced_ |= only(i);
@@ -57,23 +58,26 @@ void PositionWatch::notice_loss(std::size_t actuator) noexcept {
   }
 }
 
-void PositionWatch::step(Shafts& shafts, std::span<const double> velocity, std::uint64_t late) noexcept {
+void PositionWatch::step(Shafts& shafts, std::span<const double> velocity, std::uint64_t missed) noexcept {
+  late_answers_.step(missed);
   jumped_ = 0;
   for (std::size_t j = 0; j < wiring_.joints(); ++j) {
     joints_[j].speed = std::max(std::abs(velocity[j]), kFades * joints_[j].speed);
   }
-  IndexSet online = 0;
+  IndexSet online = 0, silent = 0;
   for (std::size_t i = 0; i < wiring_.actuators(); ++i) {
     if (told(i).online) online |= only(i);
     if (told(i).online && !has(online_, i)) doubts_[i].reads = told(i).position_reads;
     if (told(i).online && !told(i).missed) continue;
+    silent |= only(i);
     doubt(i, !told(i).online);
     doubts_[i].missed = std::min(doubts_[i].missed + 1, kMostMissed);
     if (!told(i).online && has(online_, i)) notice_loss(i);
   }
   online_ = online;
+  answered_ = ~wiring_.joints_of(silent);
   JointArray now = joints_at(shafts.rad());
-  judge(now, static_cast<int>(std::min<std::uint64_t>(late, kMostMissed)), shafts);
+  judge(now, static_cast<int>(std::min<std::uint64_t>(late_answers_.now(), kMostMissed)), shafts);
   const bool put_elsewhere = held_ != 0;  // refused, or about to be believed
   for (std::size_t i = 0; i < wiring_.actuators(); ++i) {
     if (!has(online, i)) continue;

@@ -10,6 +10,7 @@
 #include "servo/drives/shafts.hpp"
 #include "servo/faults/fault_sink.hpp"
 #include "servo/joints/index_set.hpp"
+#include "servo/joints/late_answers.hpp"
 #include "servo/joints/wiring.hpp"
 
 namespace rmac {
@@ -29,8 +30,12 @@ class PositionWatch {
   PositionWatch(const ServoLoopParts& parts, const Wiring& wiring);
 
   /// One cycle, once `shafts` are read: takes back what is not believed. `velocity`: of the joints, one cycle ago.
-  /// `late`: cycles that were missed since then, in which drives went on.
-  void step(Shafts& shafts, std::span<const double> velocity, std::uint64_t late = 0) noexcept;
+  /// `missed`: cycles that the appliance left out before this one, in which drives went on.
+  void step(Shafts& shafts, std::span<const double> velocity, std::uint64_t missed = 0) noexcept;
+  /// Joints all of whose drives answered in this cycle.
+  [[nodiscard]] IndexSet answered() const noexcept { return answered_; }
+  /// Steps of this cycle may be of more cycles than one, for the appliance was late.
+  [[nodiscard]] bool late() const noexcept { return late_answers_.now() > 0; }
   /// Counters of these actuators jump while their drives look for home.
   void forget(IndexSet actuators) noexcept;
   /// They found it.
@@ -122,9 +127,11 @@ class PositionWatch {
   IndexSet unsettled_ = 0;  ///< of them: never read, silent for a while, or not believed
   IndexSet held_ = 0;       ///< the reading was not taken
   IndexSet online_ = 0;     ///< in the last cycle
+  LateAnswers late_answers_;
   IndexSet forgotten_ = 0;  ///< in the last cycle
   IndexSet referenced_ = 0;
   // Joints
+  IndexSet answered_ = 0;
   IndexSet jumped_ = 0, displaced_joints_ = 0, lost_ = 0;
   IndexSet suspected_ = 0;  ///< as they came out of control
   std::array<Place, kMaxJoints> joints_{};

@@ -19,10 +19,8 @@ constexpr double kHoldsIt = 0.15;    // of MaxEffort, that friction takes where 
 constexpr double kToAndFro = 1.5;    // of the way that is left of it
 constexpr double kLeastRange = 0.1;  // of MaxFollowingError: a path that trembles by less is none to follow
 
-constexpr int kDigitTurns = 12;  // of the last digit: it is never quite still
-constexpr int kRestsCycles = 5;  // then it is
-constexpr double kRestsS = 0.005;
 constexpr double kDeadStop = 10;        // of MaxAcceleration within a cycle: no brake and no wall does that
+constexpr int kRestsCycles = 5;         // of the setpoint
 constexpr double kFrozenEffort = 0.03;  // of MaxEffort, by which it changes meanwhile
 constexpr double kStillS = 0.1;         // of an encoder whose last digit may rest, as a coarse one's
 constexpr double kStillEffort = 0.2;    // more than twice the friction, where the joint is to turn round
@@ -33,13 +31,18 @@ constexpr double kLimitWay = 0.02;  // of what MaxAcceleration makes of that tim
 
 }  // namespace
 
+StandingWatch::StandingWatch(const ServoJoint& joint, std::size_t index, double period_s) noexcept
+    : joint_(&joint),
+      index_(static_cast<std::uint32_t>(index)),
+      period_s_(period_s),
+      digits_(kDeadStop * joint.bounds.stop_deceleration * period_s * period_s, period_s) {}
+
 void StandingWatch::rest(std::optional<double> position) noexcept {
   begun_ = false;
-  at_limit_ = 0;
   if (position) {
-    note_digits(*position, 0);
+    digits_.note(*position, 0);
   } else {
-    digits_.reset();
+    digits_.lose();
   }
 }
 
@@ -47,79 +50,40 @@ std::int64_t StandingWatch::cycles(double seconds) const noexcept {
   return static_cast<std::int64_t>(std::ceil(seconds / period_s_ - 1e-9));
 }
 
-bool StandingWatch::froze() const noexcept {
-  constexpr double kNoticedS = 0.003;
-  return (turns_ >= kDigitTurns || stopped_dead_) && same_ >= std::max<std::int64_t>(3, cycles(kNoticedS));
-}
-
 void StandingWatch::step(const ResponseSeen& seen, FaultSink& faults) noexcept {
   if (!begun_) {
     begun_ = true;
-    digits_ = seen.position;
-    same_ = fast_ = 0;
-    last_step_ = 0;
-    stopped_dead_ = false;
+    digits_.begin(seen.position, seen.effort);
     at_limit_ = 0;
     begin_limit(seen);
     set_before_ = seen.position_set;
-    effort_.begin(seen.effort);
     efforts_ = 0;
     begin_rest(seen);
     return;
   }
-  if (same_ == 0) set_still_ = seen.position_set;
+  if (digits_.same() == 0) set_still_ = seen.position_set;
   constexpr double kLatelyS = 0.5;
   const double efforts = std::min(static_cast<double>(++efforts_), kLatelyS / period_s_);
   effort_lately_ += (seen.effort - effort_lately_) / efforts;
-  const double went = digits_ ? seen.position - *digits_ : 0;
-  if (seen.answered) note_digits(seen.position, seen.effort);
+  const double went = digits_.step_to(seen.position);
+  if (seen.answered) digits_.note(seen.position, seen.effort);
   watch_digits(seen, faults);
   watch_way(seen, went, faults);
   watch_limit(seen, faults);
   set_before_ = seen.position_set;
 }
 
-void StandingWatch::note_digits(double position, double effort) noexcept {
-  const double step = digits_ ? position - *digits_ : 0;
-  digits_ = position;
-  if (step == 0) {
-    if (same_++ == 0) stopped_dead_ = fast_ > 1;
-    fast_ = 0;
-    effort_.add(effort);
-    return;
-  }
-  if (same_ > std::max<std::int64_t>(kRestsCycles, cycles(kRestsS))) {
-    turns_ = 0;
-    usual_ = std::max(usual_, effort_.width());
-  }
-  note_step(step);
-  same_ = 0;
-  stopped_dead_ = false;
-  effort_.begin(effort);
-}
-
-void StandingWatch::note_step(double step) noexcept {
-  constexpr double kNone = 1e-9;  // what a transmission rounds
-  constexpr double kFastDigits = 5;
-  if (std::abs(step) > kNone) digit_ = digit_ > 0 ? std::min(digit_, std::abs(step)) : std::abs(step);
-  if (step * last_step_ < 0) turns_ = std::min(turns_ + 1, kDigitTurns);
-  const double speed = kDeadStop * joint_->bounds.stop_deceleration * period_s_ * period_s_;
-  const bool fast = speed > 0 && std::abs(step) > std::max(speed, kFastDigits * digit_) && step * last_step_ > 0;
-  fast_ = fast ? std::min(fast_ + 1, 2) : 0;
-  last_step_ = step;
-}
-
 void StandingWatch::watch_digits(const ResponseSeen& seen, FaultSink& faults) const noexcept {
-  if (!(joint_->max_effort > 0) || same_ < kStandsCycles) return;
-  const double changed = effort_.width() / joint_->max_effort;
-  const double for_s = static_cast<double>(same_) * period_s_;
+  if (!(joint_->max_effort > 0) || digits_.same() < kStandsCycles) return;
+  const double changed = digits_.effort_change() / joint_->max_effort;
+  const double usual = digits_.usual_change() / joint_->max_effort;
+  const double for_s = static_cast<double>(digits_.same()) * period_s_;
+  const double away = seen.position_set - set_still_;
   if (froze()) {
-    if (for_s < kStandsS || changed < std::clamp(2 * usual_ / joint_->max_effort, kFrozenEffort, kStillEffort)) return;
+    if (for_s < kStandsS || changed < std::clamp(2 * usual, kFrozenEffort, kStillEffort)) return;
     raise_frozen(faults);
-  } else if (!slips() && for_s >= kStillS && changed >= kStillEffort &&
-             std::abs(seen.position_set - set_still_) > 2 * digit_) {
-    faults.raise(
-        {ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, seen.position_set - set_still_, for_s});
+  } else if (!slips() && for_s >= kStillS && changed >= kStillEffort && std::abs(away) > 2 * digits_.digit()) {
+    faults.raise({ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, away, for_s});
   }
 }
 
@@ -212,7 +176,7 @@ void StandingWatch::raise_standing(const Stretch& stretch, const ResponseSeen& s
 
 void StandingWatch::raise_frozen(FaultSink& faults) const noexcept {
   faults.raise({ServoFault::Kind::EncoderFrozen, ServoFault::Part::Joint, index_,
-                static_cast<double>(same_) * period_s_, effort_.width()});
+                static_cast<double>(digits_.same()) * period_s_, digits_.effort_change()});
 }
 
 void StandingWatch::begin_limit(const ResponseSeen& seen) noexcept {

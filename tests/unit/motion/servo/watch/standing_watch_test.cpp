@@ -12,11 +12,6 @@ using testing::IsEmpty;
 /// 800 N, 1 m/s², 0.5 mm of following error; a digit is 0.0001 mm.
 class StandingJoint : public testing::Test {
  protected:
-  StandingJoint() {
-    joint_.max_effort = 800;
-    joint_.max_following_error = 0.5;
-    joint_.bounds.stop_deceleration = 1000;
-  }
   void step(double position, double position_set, double effort = 0) {
     watch_.step({.effort = effort, .position = position, .position_set = position_set}, faults_);
   }
@@ -24,7 +19,13 @@ class StandingJoint : public testing::Test {
   void rest_restlessly(int cycles) {
     for (int i = 0; i < cycles; ++i) step(i % 2 == 0 ? 0 : 1e-4, 0);
   }
-  ServoJoint joint_;
+  ServoJoint joint_ = [] {
+    ServoJoint made;
+    made.max_effort = 800;
+    made.max_following_error = 0.5;
+    made.bounds.stop_deceleration = 1000;
+    return made;
+  }();
   StandingWatch watch_{joint_, 4, 0.001};
   RecordedFaults faults_;
 };
