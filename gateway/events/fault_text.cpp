@@ -176,8 +176,9 @@ std::string joint_cause(const ServoFault& fault, const std::string& at) {
           at, fault.value, fault.bound);
     case ServoFault::Kind::Oscillation:
       return fmt::format(
-          "{}: its servo loop swings at about {:.3g} Hz, its effort by {:.3g} either way; look for loose mechanics, "
-          "load it with softer loops (`rmac load --soften 8`, or by more where it swings then, too), and have "
+          "{}: its servo loop swings at about {:.3g} Hz, its effort by {:.3g} either way; look for loose mechanics or "
+          "for what holds the joint, load it with softer loops (`rmac load --soften 8`, or by more where it swings "
+          "then, too), and have "
           "`rmac tune` find gains and filters for it",
           at, fault.value, fault.bound);
     case ServoFault::Kind::WrongDirection:
@@ -187,9 +188,17 @@ std::string joint_cause(const ServoFault& fault, const std::string& at) {
           at, fault.value, fault.bound);
     case ServoFault::Kind::StandsStill:
       return fmt::format(
-          "{}: its position stands still for {:.3g} s, and it was to go {:.3g}; check the encoder and its coupling, "
-          "and whether the axis is blocked, then reset",
+          "{}: its position stands still for {:.3g} s, and it was to go {:.3g}; look for what blocks the axis or what "
+          "it met, whether its brake opens and its drive gives torque, and at the coupling of its encoder, then reset",
           at, fault.bound, fault.value);
+    case ServoFault::Kind::EncoderFrozen:
+      return fmt::format(
+          "{}: its encoder tells the same to the last digit for {:.3g} s, while the effort changed by {:.3g}: it "
+          "froze, "
+          "or its shaft is held fast; check the encoder, its cable, its coupling and the brake, and look where the "
+          "axis "
+          "really is, then reset and find the reference again",
+          at, fault.value, fault.bound);
     case ServoFault::Kind::EncoderJump:
       return fmt::format(
           "{}: its position jumped by {:.4g} within a cycle, and motion explains {:.4g}; check the encoder, its cable "
@@ -276,6 +285,7 @@ std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
     case Kind::Oscillation:
     case Kind::WrongDirection:
     case Kind::StandsStill:
+    case Kind::EncoderFrozen:
     case Kind::EncoderJump:
     case Kind::Displaced:
     case Kind::ForceLimit:
@@ -330,6 +340,7 @@ MinorCode code_of(ServoFault::Kind kind) noexcept {
       return MinorCode::TravelLimit;
     case Kind::VelocityBound:
       return MinorCode::SpeedLimit;
+    case Kind::EncoderFrozen:
     case Kind::EncoderJump:
     case Kind::Displaced:
     case Kind::SensorLost:

@@ -14,6 +14,8 @@ from test_forces import STOCK, slot
 from view_page import BETWEEN_LOOKS_MM, TABLE_LINK, ViewCase, at, chain, frame, moves_at_random, program, shown
 
 COUNT = 10 / 2**20  # mm of a screw that an encoder tells apart, or more than the degrees of a gear
+SOFTER = 4
+RATED_NM = 0.28
 SHARE_ROUNDED = 1e-4  # of a rated torque: as plots and reports round it
 SPINDLE = request("RMAC_CAM.SetSpindleRPM", SpindleNumber=0, RPM=4000)
 
@@ -55,9 +57,14 @@ class ViewOfDynamics(ViewCase):
 
     @staticmethod
     def weak(device):
-        """Drives that take their motors for smaller than they are: loops push too little, and what is pushed is too much."""
+        """Motors too small for their axes, with loops too soft: they follow badly, and what they give is too much for them."""
         for actuator in device["Actuators"]:
-            actuator.update(RatedTorque=0.2, MaxMeasuredTorque=8)
+            actuator.update(RatedTorque=RATED_NM, MaxMeasuredTorque=8)
+        device["DigitalControlInterface"]["Parameters"]["rated_torque_nm"] = [RATED_NM] * 3 + [0] + [RATED_NM] * 2
+        for joint in device["Joints"]:
+            for k, softer in enumerate((SOFTER, SOFTER**2, SOFTER)):
+                joint["Gains"][k] /= softer
+            joint["MaxFollowingError"] = 3
 
     @staticmethod
     def swinging(device):

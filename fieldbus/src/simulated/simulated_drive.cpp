@@ -100,6 +100,8 @@ void SimulatedServoDrive::brake(double period_s) noexcept {
   const double step_s = period_s / steps;
   brake_closed_ = brake_closed_ || std::abs(plant_.speed_rad_s()) < kStandingRadS;
   if (brake_closed_) {
+    constexpr double kFadesS = 0.02;  // assumed: what the brake holds the motor need not
+    integral_nm_ *= std::exp(-period_s / kFadesS);
     plant_.advance(integral_nm_, true, period_s);
     return;
   }

@@ -25,8 +25,11 @@ Held elastic(double stiffness, double damping, double before, double after, doub
 /// Over one step, torque of a contact on the load.
 Held touched(const PlantContact& contact, double from_rad, double way, double dt) noexcept {
   if (contact.stiffness_nm_rad == 0) return {};
-  const double before = std::max(0.0, contact.surface_rad - from_rad);
-  const double after = std::max(0.0, contact.surface_rad - from_rad - way);
+  double before = contact.surface_rad - from_rad;
+  double after = before - way;
+  if (contact.clamps) return elastic(contact.stiffness_nm_rad, contact.damping_nm_s_rad, before, after, -way, dt);
+  before = std::max(0.0, before);
+  after = std::max(0.0, after);
   if (before == 0 && after == 0) return {};
   const Held pressed = elastic(contact.stiffness_nm_rad, contact.damping_nm_s_rad, before, after, -way, dt);
   return pressed.nm > 0 ? Held{pressed.nm, pressed.nm_rad} : Held{};
@@ -35,9 +38,9 @@ Held touched(const PlantContact& contact, double from_rad, double way, double dt
 }  // namespace
 
 double PlantContact::torque_nm(double angle_rad, double speed_rad_s) const noexcept {
-  if (stiffness_nm_rad == 0 || angle_rad >= surface_rad) return 0;
-  const double spring = stiffness_nm_rad * (surface_rad - angle_rad);
-  return std::max(0.0, spring - damping_nm_s_rad * speed_rad_s);
+  if (stiffness_nm_rad == 0 || (angle_rad >= surface_rad && !clamps)) return 0;
+  const double torque = stiffness_nm_rad * (surface_rad - angle_rad) - damping_nm_s_rad * speed_rad_s;
+  return clamps ? torque : std::max(0.0, torque);
 }
 
 double TwoMassParameters::resonance_rad_s() const noexcept {

@@ -36,7 +36,7 @@ void ServoLoop::Impl::cycle(const ServoCommand& command, ServoReport& report) no
   } else {
     receive(command);
     obey(command);
-    read();
+    read(command.cycles_missed);
     watch_drives(command);
     finish_reset();
     run_homing(command);
@@ -99,18 +99,11 @@ const DriveFeedback& ServoLoop::Impl::told(std::size_t actuator) const noexcept 
   return part.bus->feedback[part.axis];
 }
 
-IndexSet ServoLoop::Impl::answering() const noexcept {
-  IndexSet silent = 0;
-  for (std::size_t i = 0; i < wiring.actuators(); ++i) {
-    if (!told(i).online) silent |= only(i);
-  }
-  return silent == 0 ? ~IndexSet{0} : ~wiring.joints_of(silent);
-}
-
-void ServoLoop::Impl::read() noexcept {
+void ServoLoop::Impl::read(std::uint64_t missed) noexcept {
   shafts.read();
-  positions.step(shafts, joints.velocity());
-  joints.read(shafts.rad(), shafts.rad_s(), live.all(), live.all() & answering(), setpoints.velocity());
+  positions.step(shafts, joints.velocity(), missed);
+  if (positions.late()) joints.forget_steps();
+  joints.read(shafts.rad(), shafts.rad_s(), live.all(), live.all() & positions.answered(), setpoints.velocity());
   spindles.read();
 }
 
@@ -226,7 +219,12 @@ void ServoLoop::Impl::choose_setpoints(const ServoCommand& command) noexcept {
 JointSeen ServoLoop::Impl::seen(std::size_t joint) const noexcept {
   const ForceLoop& force_loop = setpoints.force_loop(joint);
   const std::optional<double> measured = joints.measured_effort(joint);
-  return {.jump = positions.jump(joint) != 0 ? positions.jump(joint) : joints.jump(joint),
+  const bool unbelieved = positions.jump(joint) != 0;
+  return {.position = {.jump = unbelieved ? positions.jump(joint) : joints.jump(joint),
+                       .step = joints.step(joint),
+                       .may_stop = joints.may_stop(joint),
+                       .refused = unbelieved},
+          .answered = has(positions.answered(), joint),
           .velocity = joints.velocity()[joint],
           .following_error = setpoints.position()[joint] - setpoints.gone_on(joint) - joints.position()[joint],
           .position_set = setpoints.position()[joint],
@@ -248,8 +246,9 @@ void ServoLoop::Impl::watch_motion(const ServoCommand& command) noexcept {
   for (std::size_t j = 0; j < wiring.joints(); ++j) {
     if (state.powered() && live[j]) {
       motion_watch.joint(j).step(seen(j), state);
+      positions.doubt_place(j, motion_watch.joint(j).doubts_position());
     } else {
-      motion_watch.joint(j).rest();
+      motion_watch.joint(j).rest(has(positions.answered(), j) ? std::optional(joints.position()[j]) : std::nullopt);
     }
   }
   if (state.powered()) {

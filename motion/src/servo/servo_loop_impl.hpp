@@ -42,7 +42,8 @@ struct ServoLoop::Impl {
   // The steps of a cycle, in their order.
   void receive(const ServoCommand& command) noexcept;
   void obey(const ServoCommand& command) noexcept;
-  void read() noexcept;
+  /// `missed`: cycles that were left out before this one.
+  void read(std::uint64_t missed) noexcept;
   void watch_drives(const ServoCommand& command) noexcept;
   void finish_reset() noexcept;
   void run_homing(const ServoCommand& command) noexcept;
@@ -61,7 +62,6 @@ struct ServoLoop::Impl {
   void take_over_joints(IndexSet live_drives, std::span<const double> shaft_set) noexcept;
 
   [[nodiscard]] const DriveFeedback& told(std::size_t actuator) const noexcept;
-  [[nodiscard]] IndexSet answering() const noexcept;
   [[nodiscard]] bool operable(std::size_t joint) const noexcept;
   [[nodiscard]] IndexSet controlled() const noexcept;
   [[nodiscard]] ServoInput input(std::size_t joint) const noexcept;

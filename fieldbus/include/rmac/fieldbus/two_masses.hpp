@@ -9,8 +9,9 @@ struct PlantContact {
   double stiffness_nm_rad = 0;  ///< 0: nothing is there
   double damping_nm_s_rad = 0;
   double surface_rad = 0;
+  bool clamps = false;  ///< it pulls as well, at angles above: the load is caught there, as in a guide that has seized
 
-  /// What it turns a shaft with that stands and turns so; never negative, for nothing pulls.
+  /// What it turns a shaft with that stands and turns so; never negative unless it clamps, for nothing else pulls.
   [[nodiscard]] double torque_nm(double angle_rad, double speed_rad_s) const noexcept;
 };
 

@@ -12,7 +12,8 @@ class ShaftReader {
  public:
   ShaftReader(const DriveScale& scale, double period_s) noexcept : scale_(scale), period_s_(period_s) {}
 
-  /// The words of this cycle. While the drive does not answer the shaft is taken to stand.
+  /// The words of this cycle. Where an answer is missing, the shaft goes on at its speed for three cycles, and then is
+  /// taken to stand where it got to; while the drive does not answer at all, where it was.
   void read(const DriveFeedback& words) noexcept;
   /// What was read in this cycle is not believed: the shaft stands where it was.
   void refuse() noexcept;
@@ -31,10 +32,14 @@ class ShaftReader {
   [[nodiscard]] bool seen() const noexcept { return seen_; }              ///< a position was read
 
  private:
+  [[nodiscard]] bool goes_on(const DriveFeedback& words) noexcept;
+  void come_back(double now) noexcept;
+
   DriveScale scale_;
   double period_s_;
   bool seen_ = false;
   std::int64_t counts_ = 0;
+  std::uint8_t gone_on_ = 0;  ///< cycles without an answer
   std::uint8_t history_ = 0;  ///< readings before the next one that its velocity may use, 2 at most
   double rad_ = 0, rad_before_ = 0, rad_s_ = 0;
   std::int64_t counts_before_ = 0;  ///< the last reading, for `refuse`

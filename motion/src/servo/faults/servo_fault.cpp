@@ -36,6 +36,8 @@ const char* to_string(ServoFault::Kind kind) noexcept {
       return "WrongDirection";
     case ServoFault::Kind::StandsStill:
       return "StandsStill";
+    case ServoFault::Kind::EncoderFrozen:
+      return "EncoderFrozen";
     case ServoFault::Kind::EncoderJump:
       return "EncoderJump";
     case ServoFault::Kind::Displaced:

@@ -1,10 +1,18 @@
 #include "servo/joints/joint_reader.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "rmac/motion/servo/pitch_error.hpp"
 
 namespace rmac {
+
+namespace {
+
+/// What a joint comes back with from what stopped it is less than it came with, so long ago.
+constexpr double kFadesS = 0.02;
+
+}  // namespace
 
 JointReader::JointReader(const ServoLoopParts& parts, const Wiring& wiring, Transmission& transmission)
     : joints_(parts.joints),
@@ -31,11 +39,18 @@ void JointReader::read(std::span<const double> shafts, std::span<const double> s
   efforts_.read(positions());
 }
 
-void JointReader::read_jump(std::size_t joint, double shown, bool steady) noexcept {
-  jump_[joint] = shown_history_[joint] == 2 ? shown - 2 * shown1_[joint] + shown2_[joint] : 0;
-  shown2_[joint] = shown1_[joint];
-  shown1_[joint] = shown;
-  shown_history_[joint] = steady ? static_cast<std::uint8_t>(std::min(shown_history_[joint] + 1, 2)) : std::uint8_t{0};
+void JointReader::read_jump(std::size_t joint, double position, bool steady) noexcept {
+  Shown& shown = shown_[joint];
+  const double step = position - shown.last;
+  shown.step.reset();
+  if (shown.history > 0 && steady) shown.step = step;
+  shown.jump = steady && shown.history == 2 ? step - (shown.last - shown.before) : 0;
+  shown.may_stop = std::abs(step) <= shown.fastest + joints_[joint].bounds.jump / 2;
+  shown.fastest *= std::exp(-period_s_ / kFadesS);
+  if (shown.history > 0) shown.fastest = std::max(shown.fastest, std::abs(step));
+  shown.before = shown.last;
+  shown.last = position;
+  shown.history = steady ? static_cast<std::uint8_t>(std::min(shown.history + 1, 2)) : std::uint8_t{0};
 }
 
 void JointReader::reflect(std::span<const double> position_set, std::span<const double> velocity_set) noexcept {

@@ -24,6 +24,11 @@ class JointReader {
   /// those of them all of whose drives answer; the counter of another one may change by more than its shaft.
   void read(std::span<const double> shafts, std::span<const double> shaft_velocities, IndexSet live, IndexSet steady,
             std::span<const double> velocity_set) noexcept;
+  /// Before `read` in a cycle that comes late: the drives have gone on for longer than a cycle, and no step of it is
+  /// one.
+  void forget_steps() noexcept {
+    for (Shown& shown : shown_) shown.history = 0;
+  }
   /// Where there are no drives: the joints are where they are wanted.
   void reflect(std::span<const double> position_set, std::span<const double> velocity_set) noexcept;
 
@@ -40,10 +45,14 @@ class JointReader {
     return efforts_.told(joint) ? std::optional(efforts_[joint]) : std::nullopt;
   }
   /// Change of the joint's step from the last cycle to this one, before corrections.
-  [[nodiscard]] double jump(std::size_t joint) const noexcept { return jump_[joint]; }
+  [[nodiscard]] double jump(std::size_t joint) const noexcept { return shown_[joint].jump; }
+  /// Its last step, where drives answered in both cycles.
+  [[nodiscard]] std::optional<double> step(std::size_t joint) const noexcept { return shown_[joint].step; }
+  /// With this cycle's step it was no faster than a moment before, either way: what made a jump of it may be a stop.
+  [[nodiscard]] bool may_stop(std::size_t joint) const noexcept { return shown_[joint].may_stop; }
 
  private:
-  void read_jump(std::size_t joint, double shown, bool steady) noexcept;
+  void read_jump(std::size_t joint, double position, bool steady) noexcept;
 
   std::span<const ServoJoint> joints_;
   double period_s_;
@@ -51,9 +60,16 @@ class JointReader {
   MeasuredEfforts efforts_;
   std::array<double, kMaxJoints> position_{}, velocity_{};
   std::array<double, kMaxJoints> force_{};
-  std::array<double, kMaxJoints> jump_{};
-  std::array<double, kMaxJoints> shown1_{}, shown2_{};    ///< positions one and two cycles ago, uncorrected
-  std::array<std::uint8_t, kMaxJoints> shown_history_{};  ///< how many of the two there are
+  /// What a joint's positions show, before corrections.
+  struct Shown {
+    double last = 0, before = 0;  ///< positions one and two cycles ago
+    std::uint8_t history = 0;     ///< how many of the two there are
+    double jump = 0;
+    std::optional<double> step{};
+    double fastest = 0;  ///< step, lately
+    bool may_stop = false;
+  };
+  std::array<Shown, kMaxJoints> shown_{};
 };
 
 }  // namespace rmac

@@ -10,9 +10,10 @@ void JointWatch::raise(ServoFault::Kind kind, double value, double bound, FaultS
 
 void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
   const JointBounds& bounds = joint_->bounds;
-  if (bounds.jump > 0 && std::abs(seen.jump) > bounds.jump) {
-    raise(ServoFault::Kind::EncoderJump, seen.jump, bounds.jump, faults);
-  }
+  JumpSeen jump = seen.position;
+  jump.trembles = oscillation_.trembles();
+  jump.shakes = oscillation_.shakes();
+  jumps_.step(jump, faults);
   watch_sensor(faults);
   if (seen.bounces) {
     oscillation_.rest();
@@ -22,10 +23,13 @@ void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
   response_.step({.effort = oscillation_.acted(),
                   .position = seen.loop.position,
                   .position_set = seen.following_error + seen.loop.position,
-                  .out_of_bound = std::abs(seen.following_error) > joint_->max_following_error},
+                  .out_of_bound = std::abs(seen.following_error) > joint_->max_following_error,
+                  .swings = oscillation_.swings(),
+                  .answered = seen.answered},
                  faults);
   if (!(std::abs(seen.following_error) <= joint_->max_following_error)) {
-    raise(ServoFault::Kind::FollowingError, seen.following_error, joint_->max_following_error, faults);
+    if (oscillation_.swings() && !response_.encoder_froze()) oscillation_.raise(faults);
+    response_.name_error(seen.following_error, faults);
   }
   if (too_fast_.step(seen.velocity, bounds.velocity)) {
     raise(ServoFault::Kind::VelocityBound, seen.velocity, bounds.velocity, faults);

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "rmac/motion/force_control.hpp"
 #include "rmac/motion/servo/servo_loop_parts.hpp"
 #include "servo/faults/fault_sink.hpp"
 #include "servo/watch/cycles_beyond.hpp"
+#include "servo/watch/jump_watch.hpp"
 #include "servo/watch/oscillation_watch.hpp"
 #include "servo/watch/response_watch.hpp"
 
@@ -13,7 +15,8 @@ namespace rmac {
 
 /// What the watch over a joint looks at in one cycle: mm or degrees and s, N or N·m.
 struct JointSeen {
-  double jump = 0;             ///< change of its position's step
+  JumpSeen position{};
+  bool answered = true;        ///< its drives did in this cycle
   double velocity = 0;         ///< measured
   double following_error = 0;  ///< of the cycle in which the drives were where they say
   double position_set = 0, velocity_set = 0;
@@ -32,15 +35,18 @@ class JointWatch {
   JointWatch(const ServoJoint& joint, std::size_t index, double period_s) noexcept
       : joint_(&joint),
         index_(static_cast<std::uint32_t>(index)),
+        jumps_(joint, index_),
         oscillation_(joint, index, period_s),
         response_(joint, index, period_s) {}
 
   void step(const JointSeen& seen, FaultSink& faults) noexcept;
-  /// The joint is not under control.
-  void rest() noexcept {
+  [[nodiscard]] bool doubts_position() const noexcept { return jumps_.doubts(); }
+  /// The joint is not under control; `position`: where its encoder has it meanwhile, where it tells that.
+  void rest(std::optional<double> position = std::nullopt) noexcept {
     too_fast_.restart();
+    jumps_.rest();
     oscillation_.rest();
-    response_.rest();
+    response_.rest(position);
   }
 
  private:
@@ -51,6 +57,7 @@ class JointWatch {
   const ServoJoint* joint_;
   std::uint32_t index_;
   CyclesBeyond too_fast_;
+  JumpWatch jumps_;
   OscillationWatch oscillation_;
   ResponseWatch response_;
 };

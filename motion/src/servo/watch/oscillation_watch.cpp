@@ -14,6 +14,10 @@ constexpr double kSlowestTurnS = 0.06;  // what turns round less often is left t
 constexpr double kLasts = 0.8;          // a swing with a damping of 2.4 % falls to so much in a period and a half
 // Below, a loop with an integral part gives energy to what a slow force from outside moves, too: it has to grow.
 constexpr double kSlowHz = 40, kGrows = 1.3;
+// Where a loop gives back no more than friction takes, the work is next to nothing, and half a cycle by which effort
+// and way are apart decides on its sign. What holds back a force from outside is far below.
+constexpr double kResists = 0.12;
+constexpr double kRises = 1.05;    // since the first turns: it grows, if slowly
 constexpr double kPathTurn = 0.1;  // of the largest acceleration that the path asks for
 constexpr double kLeastAcceleration = 1e-3;
 
@@ -32,7 +36,8 @@ void OscillationWatch::begin() noexcept {
   turned_ = path_turned_ = 0;
   most_acceleration_ = 0;
   cycles_ = last_turn_ = 0;
-  first_swings_ = work_ = 0;
+  swings_.first = 0;
+  changes_ = {};
   path_turns_.restart();
 }
 
@@ -41,6 +46,7 @@ void OscillationWatch::rest() noexcept {
   turns_.restart();
   commanded_.fill(0);
   begun_ = false;
+  chain_ = path_chain_ = 0;
 }
 
 void OscillationWatch::add_turn() noexcept {
@@ -48,10 +54,11 @@ void OscillationWatch::add_turn() noexcept {
   constexpr int kPassed = 2;
   if (turned_ >= kPassed) {
     const double swing = turns_.swing();
-    latest_[static_cast<std::size_t>(turned_ % kCompared)] = swing;
-    if (turned_ < kPassed + kCompared) first_swings_ += swing;
+    swings_.latest[static_cast<std::size_t>(turned_ % kCompared)] = swing;
+    if (turned_ < kPassed + kCompared) swings_.first += swing;
   }
   ++turned_;
+  ++chain_;
   last_turn_ = cycles_;
 }
 
@@ -60,7 +67,7 @@ double OscillationWatch::hz() const noexcept {
 }
 
 double OscillationWatch::latest_swings() const noexcept {
-  return std::accumulate(latest_.begin(), latest_.end(), 0.0);
+  return std::accumulate(swings_.latest.begin(), swings_.latest.end(), 0.0);
 }
 
 bool OscillationWatch::lasts() const noexcept {
@@ -68,7 +75,8 @@ bool OscillationWatch::lasts() const noexcept {
   if (static_cast<double>(cycles_) * period_s_ < kLeastTimeS) return false;
   // Over half of all that it may be is enough, whoever drives it.
   if (latest_swings() / kCompared > joint_->max_effort) return true;
-  return work_ > 0 && latest_swings() >= (hz() < kSlowHz ? kGrows : kLasts) * first_swings_;
+  return changes_.work > -kResists * std::sqrt(changes_.efforts * changes_.ways) &&
+         latest_swings() >= (hz() < kSlowHz ? kGrows : kLasts) * swings_.first;
 }
 
 void OscillationWatch::step(const OscillationSeen& seen, FaultSink& faults) noexcept {
@@ -76,7 +84,7 @@ void OscillationWatch::step(const OscillationSeen& seen, FaultSink& faults) noex
   const double before = last_effort_;
   take_effort(seen);
   const double effort = last_effort_;
-  const double work = begun_ ? (effort - before) * (way - last_way_) : 0;
+  const double effort_change = begun_ ? effort - before : 0, way_change = begun_ ? way - last_way_ : 0;
   last_position_ = seen.position;
   last_way_ = way;
   begun_ = true;
@@ -84,13 +92,28 @@ void OscillationWatch::step(const OscillationSeen& seen, FaultSink& faults) noex
   if (turned_ == 0 && !turns) return;
 
   ++cycles_;
-  work_ += work;
+  changes_.work += effort_change * way_change;
+  changes_.efforts += effort_change * effort_change;
+  changes_.ways += way_change * way_change;
   most_acceleration_ = std::max(most_acceleration_, std::abs(seen.acceleration_set));
-  if (path_turns_.step(seen.acceleration_set, std::max(kPathTurn * most_acceleration_, kLeastAcceleration)))
+  if (path_turns_.step(seen.acceleration_set, std::max(kPathTurn * most_acceleration_, kLeastAcceleration))) {
     ++path_turned_;
+    ++path_chain_;
+  }
   if (turns) add_turn();
-  if (static_cast<double>(cycles_ - last_turn_) * period_s_ > kSlowestTurnS) return begin();
-  if (!turns || !lasts()) return;
+  if (static_cast<double>(cycles_ - last_turn_) * period_s_ > kSlowestTurnS) {
+    chain_ = path_chain_ = 0;
+    return begin();
+  }
+  if (!turns) return;
+  if (lasts()) return raise(faults);
+  // What was large at first, and then goes on smaller, is looked at anew; what grows, however slowly, is not forgotten.
+  const bool seen_long = static_cast<double>(cycles_) * period_s_ >= kLeastTimeS;
+  const bool grows = latest_swings() > kRises * swings_.first;
+  if (seen_long && !grows && turned_ > kTurns + 2 * path_turned_ + kCompared) begin();
+}
+
+void OscillationWatch::raise(FaultSink& faults) const noexcept {
   faults.raise(
       {ServoFault::Kind::Oscillation, ServoFault::Part::Joint, index_, hz(), latest_swings() / (2 * kCompared)});
 }

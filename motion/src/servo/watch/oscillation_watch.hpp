@@ -32,6 +32,13 @@ class OscillationWatch {
   void step(const OscillationSeen& seen, FaultSink& faults) noexcept;
   /// The effort that acted while the joint went its last way.
   [[nodiscard]] double acted() const noexcept { return last_effort_; }
+  /// Two periods of it were seen, which the path does not explain.
+  [[nodiscard]] bool swings() const noexcept { return turned_ >= kTurns - 2 + 2 * path_turned_; }
+  /// The effort turned round some times more than the path explains.
+  [[nodiscard]] bool trembles() const noexcept { return chain_ >= 3 + 2 * path_chain_; }
+  /// And by half of all that it may be, peak to peak.
+  [[nodiscard]] bool shakes() const noexcept { return trembles() && turns_.swing() > joint_->max_effort / 2; }
+  void raise(FaultSink& faults) const noexcept;
   /// The joint is not under control.
   void rest() noexcept;
 
@@ -58,13 +65,20 @@ class OscillationWatch {
 
   // Since the first turn.
   int turned_ = 0;
+  int chain_ = 0;       ///< turns on end, of which those that became smaller were forgotten
+  int path_chain_ = 0;  ///< of the path, meanwhile
   int path_turned_ = 0;
   double most_acceleration_ = 0;
   std::int64_t cycles_ = 0;
   std::int64_t last_turn_ = 0;
-  std::array<double, kCompared> latest_{};
-  double first_swings_ = 0;  ///< the sum of so many
-  double work_ = 0;          ///< of the efforts' changes on the ways' changes
+  struct {
+    std::array<double, kCompared> latest{};
+    double first = 0;  ///< the sum of so many
+  } swings_;
+  struct {
+    double work = 0;               ///< of the efforts' changes on the ways' changes
+    double efforts = 0, ways = 0;  ///< sums of the squares of both
+  } changes_;
 };
 
 }  // namespace rmac

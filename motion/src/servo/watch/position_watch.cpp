@@ -22,7 +22,8 @@ constexpr double kFades = 0.9;
 
 }  // namespace
 
-PositionWatch::PositionWatch(const ServoLoopParts& parts, const Wiring& wiring) : parts_(parts), wiring_(wiring) {
+PositionWatch::PositionWatch(const ServoLoopParts& parts, const Wiring& wiring)
+    : parts_(parts), wiring_(wiring), late_answers_(wiring.actuator_delays()) {
   doubtful_ = unsettled_ = first(wiring_.actuators());
   for (std::size_t i = 0; i < wiring_.actuators(); ++i) {
     if (parts_.actuators[i].homing_turn == 0) referenced_ |= only(i);
@@ -57,23 +58,26 @@ void PositionWatch::notice_loss(std::size_t actuator) noexcept {
   }
 }
 
-void PositionWatch::step(Shafts& shafts, std::span<const double> velocity) noexcept {
+void PositionWatch::step(Shafts& shafts, std::span<const double> velocity, std::uint64_t missed) noexcept {
+  late_answers_.step(missed);
   jumped_ = 0;
   for (std::size_t j = 0; j < wiring_.joints(); ++j) {
     joints_[j].speed = std::max(std::abs(velocity[j]), kFades * joints_[j].speed);
   }
-  IndexSet online = 0;
+  IndexSet online = 0, silent = 0;
   for (std::size_t i = 0; i < wiring_.actuators(); ++i) {
     if (told(i).online) online |= only(i);
     if (told(i).online && !has(online_, i)) doubts_[i].reads = told(i).position_reads;
     if (told(i).online && !told(i).missed) continue;
+    silent |= only(i);
     doubt(i, !told(i).online);
     doubts_[i].missed = std::min(doubts_[i].missed + 1, kMostMissed);
     if (!told(i).online && has(online_, i)) notice_loss(i);
   }
   online_ = online;
+  answered_ = ~wiring_.joints_of(silent);
   JointArray now = joints_at(shafts.rad());
-  judge(now, shafts);
+  judge(now, static_cast<int>(std::min<std::uint64_t>(late_answers_.now(), kMostMissed)), shafts);
   const bool put_elsewhere = held_ != 0;  // refused, or about to be believed
   for (std::size_t i = 0; i < wiring_.actuators(); ++i) {
     if (!has(online, i)) continue;
@@ -89,7 +93,7 @@ void PositionWatch::step(Shafts& shafts, std::span<const double> velocity) noexc
   forgotten_ = 0;
 }
 
-void PositionWatch::judge(const JointArray& now, Shafts& shafts) noexcept {
+void PositionWatch::judge(const JointArray& now, int late, Shafts& shafts) noexcept {
   IndexSet unexplained = 0;
   for (std::size_t j = 0; j < wiring_.joints(); ++j) {
     const IndexSet actuators = wiring_.actuators_of(j);
@@ -99,7 +103,7 @@ void PositionWatch::judge(const JointArray& now, Shafts& shafts) noexcept {
       if (has(actuators, i)) cycles = std::max(cycles, 1 + doubts_[i].missed);
     }
     const double step = now[j] - joints_[j].last;
-    if (std::abs(step) <= reach(j, cycles)) continue;
+    if (std::abs(step) <= reach(j, cycles + late)) continue;
     unexplained |= actuators & online_;
     jumped_ |= only(j);
     joints_[j].jump = step - joints_[j].step;
@@ -150,7 +154,7 @@ void PositionWatch::resolve(std::size_t actuator, Shafts& shafts) noexcept {
     return;
   }
   if (has(held_, actuator)) {
-    const bool same = agree(shafts, actuator, doubt.candidate, words.position_counts, 1);
+    const bool same = doubt.candidate && agree(shafts, actuator, *doubt.candidate, words.position_counts, 1);
     doubt.repeated = same ? doubt.repeated + 1 : 0;
     doubt.candidate = words.position_counts;
     if (doubt.repeated < kAgreeing) return;
@@ -258,9 +262,10 @@ void PositionWatch::engaged(std::size_t joint) noexcept {
 }
 
 void PositionWatch::forgive(const ServoFault& fault) noexcept {
-  IndexSet without = displaced_joints_;
+  IndexSet without = displaced_joints_ | std::exchange(suspected_, 0);
   if (fault.part == ServoFault::Part::Joint &&
-      (fault.kind == ServoFault::Kind::EncoderJump || fault.kind == ServoFault::Kind::Displaced)) {
+      (fault.kind == ServoFault::Kind::EncoderJump || fault.kind == ServoFault::Kind::EncoderFrozen ||
+       fault.kind == ServoFault::Kind::Displaced)) {
     without |= only(fault.index);
   }
   for (std::size_t j = 0; j < wiring_.joints(); ++j) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "rmac/motion/machine_size.hpp"
@@ -9,6 +10,7 @@
 #include "servo/drives/shafts.hpp"
 #include "servo/faults/fault_sink.hpp"
 #include "servo/joints/index_set.hpp"
+#include "servo/joints/late_answers.hpp"
 #include "servo/joints/wiring.hpp"
 
 namespace rmac {
@@ -28,7 +30,12 @@ class PositionWatch {
   PositionWatch(const ServoLoopParts& parts, const Wiring& wiring);
 
   /// One cycle, once `shafts` are read: takes back what is not believed. `velocity`: of the joints, one cycle ago.
-  void step(Shafts& shafts, std::span<const double> velocity) noexcept;
+  /// `missed`: cycles that the appliance left out before this one, in which drives went on.
+  void step(Shafts& shafts, std::span<const double> velocity, std::uint64_t missed = 0) noexcept;
+  /// Joints all of whose drives answered in this cycle.
+  [[nodiscard]] IndexSet answered() const noexcept { return answered_; }
+  /// Steps of this cycle may be of more cycles than one, for the appliance was late.
+  [[nodiscard]] bool late() const noexcept { return late_answers_.now() > 0; }
   /// Counters of these actuators jump while their drives look for home.
   void forget(IndexSet actuators) noexcept;
   /// They found it.
@@ -59,6 +66,11 @@ class PositionWatch {
                   FaultSink& faults) noexcept;
   /// This joint is under control from now on.
   void engaged(std::size_t joint) noexcept;
+  /// Whether the position of this joint jumped, or may have: where it is stopped so, whatever for, its reference is to
+  /// be found again.
+  void doubt_place(std::size_t joint, bool doubtful) noexcept {
+    suspected_ = doubtful ? suspected_ | only(joint) : suspected_ & ~only(joint);
+  }
   /// A reset left this fault: joints that were displaced, or jumped, count where they are, without their reference.
   void forgive(const ServoFault& fault) noexcept;
   /// Joints whose reference is to be found again.
@@ -68,7 +80,7 @@ class PositionWatch {
   using JointArray = std::array<double, kMaxJoints>;
 
   /// `now`: where the shafts put the joints.
-  void judge(const JointArray& now, Shafts& shafts) noexcept;
+  void judge(const JointArray& now, int late, Shafts& shafts) noexcept;
   void resolve(std::size_t actuator, Shafts& shafts) noexcept;
   void believe(std::size_t actuator, Shafts& shafts) noexcept;
   void doubt(std::size_t actuator, bool unsettles) noexcept;
@@ -89,11 +101,11 @@ class PositionWatch {
 
   /// Of a drive whose position is in doubt, or whose last answers are missing.
   struct Doubt {
-    std::uint32_t reads = 0;  ///< that there were before
-    int waited = 0;           ///< cycles for the next
-    int missed = 0;           ///< answers, since the last one that counts
-    int repeated = 0;         ///< answers on end that agree with `candidate`
-    std::int32_t candidate = 0;
+    std::uint32_t reads = 0;                  ///< that there were before
+    int waited = 0;                           ///< cycles for the next
+    int missed = 0;                           ///< answers, since the last one that counts
+    int repeated = 0;                         ///< answers on end that agree with `candidate`
+    std::optional<std::int32_t> candidate{};  ///< what the last of them told
   };
 
   /// Of a joint, in mm or degrees, before corrections.
@@ -115,10 +127,13 @@ class PositionWatch {
   IndexSet unsettled_ = 0;  ///< of them: never read, silent for a while, or not believed
   IndexSet held_ = 0;       ///< the reading was not taken
   IndexSet online_ = 0;     ///< in the last cycle
+  LateAnswers late_answers_;
   IndexSet forgotten_ = 0;  ///< in the last cycle
   IndexSet referenced_ = 0;
   // Joints
+  IndexSet answered_ = 0;
   IndexSet jumped_ = 0, displaced_joints_ = 0, lost_ = 0;
+  IndexSet suspected_ = 0;  ///< as they came out of control
   std::array<Place, kMaxJoints> joints_{};
 };
 

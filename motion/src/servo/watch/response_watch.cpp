@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rmac {
 
@@ -13,35 +14,41 @@ constexpr double kAgainstS = 0.005;  // of speeding up against the effort
 constexpr int kAgainstCycles = 5;    // which are more than a word that came late explains
 constexpr double kLeastWayShare = 0.02;  // of MaxFollowingError: a load lets a sound joint creep so far
 constexpr double kHeldShare = 0.9;       // of what it gained in the first half: less, and the effort holds it
-constexpr double kStandsS = 0.02;
-constexpr int kStandsCycles = 5;       // which are more than answers that come late, or once not, explain
-constexpr double kStandsWay = 1;       // mm or degrees that it was to go meanwhile
-constexpr double kStandsShare = 0.01;  // of what it was to go: less is standing
 
 }  // namespace
 
-void ResponseWatch::rest() noexcept {
+void ResponseWatch::rest(std::optional<double> position) noexcept {
   begun_ = false;
   last_way_ = 0;
+  cycles_ = 0;
   forget_direction(0);
-  stands_ = 0;
+  standing_.rest(position);
+  lately_.restart();
+  longer_.restart();
+  back_ = forth_ = 0;
 }
 
 void ResponseWatch::step(const ResponseSeen& seen, FaultSink& faults) noexcept {
   if (!begun_) {
-    last_position_ = stood_at_ = seen.position;
+    last_position_ = seen.position;
     error_before_ = seen.position_set - seen.position;
-    wanted_at_ = seen.position_set;
     begun_ = true;
+    lately_.step(seen);
+    longer_.step(seen);
+    standing_.step(seen, faults);
     return;
   }
-  const double way = seen.position - last_position_;
-  last_position_ = seen.position;
+  lately_.step(seen);
+  longer_.step(seen);
   // Force control goes where the part lets it: down behind what it lets down, back where less is wanted, or nowhere.
-  if (joint_->method != ControlMethod::Force) {
-    watch_direction(seen, way, faults);
-    watch_standing(seen, faults);
-  }
+  const bool looks = joint_->method != ControlMethod::Force;
+  if (looks) standing_.step(seen, faults);
+  ++cycles_;
+  if (!seen.answered) return;
+  // Where answers were missing, the way is that of several cycles.
+  const double way = (seen.position - last_position_) / std::exchange(cycles_, 0);
+  if (looks) watch_direction(seen, way, faults);
+  last_position_ = seen.position;
   last_way_ = way;
 }
 
@@ -51,11 +58,22 @@ void ResponseWatch::forget_direction(double error) noexcept {
   error_before_ = error;
 }
 
+// What ran into something comes back from it, faster and faster, and no faster than it came.
+bool ResponseWatch::rebounds(double way) noexcept {
+  constexpr double kForgetsS = 0.02;
+  const double fades = std::exp(-period_s_ / kForgetsS);
+  back_ = std::max(fades * back_, -way);
+  forth_ = std::max(fades * forth_, way);
+  return std::abs(way) <= (way > 0 ? back_ : forth_);
+}
+
 // A head that is let down speeds up against its effort, too, and goes where it is to go.
 void ResponseWatch::watch_direction(const ResponseSeen& seen, double way, FaultSink& faults) noexcept {
   const double error = seen.position_set - seen.position;
   const bool pushed = joint_->max_effort > 0 && std::abs(seen.effort) > kEffort * joint_->max_effort;
-  const bool faster = way * seen.effort < 0 && std::abs(way) > std::abs(last_way_) && way * last_way_ >= 0;
+  const bool came = rebounds(way);
+  const bool faster =
+      !came && !seen.swings && way * seen.effort < 0 && std::abs(way) > std::abs(last_way_) && way * last_way_ >= 0;
   if (!pushed || !faster) {
     forget_direction(error);
     return;
@@ -73,23 +91,21 @@ void ResponseWatch::watch_direction(const ResponseSeen& seen, double way, FaultS
   faults.raise({ServoFault::Kind::WrongDirection, ServoFault::Part::Joint, index_, gone_, seen.effort});
 }
 
-void ResponseWatch::watch_standing(const ResponseSeen& seen, FaultSink& faults) noexcept {
-  const double wanted = seen.position_set - wanted_at_;
-  if (std::abs(seen.position - stood_at_) > kStandsShare * std::abs(wanted)) {
-    stands_ = 0;
-    stood_at_ = seen.position;
-    wanted_at_ = seen.position_set;
-    return;
+void ResponseWatch::name_error(double error, FaultSink& faults) const noexcept {
+  const double bound = joint_->max_following_error;
+  const auto raise = [&](ServoFault::Kind kind, double value, double of) {
+    faults.raise({kind, ServoFault::Part::Joint, index_, value, of});
+  };
+  if (joint_->method == ControlMethod::Force) return raise(ServoFault::Kind::FollowingError, error, bound);
+  if (standing_.froze()) return standing_.raise_frozen(faults);
+  for (const ErrorHistory* const history : {&lately_, &longer_}) {
+    const ErrorHistory::Cause cause = history->cause(bound);
+    if (cause == ErrorHistory::Cause::StandsStill)
+      return raise(ServoFault::Kind::StandsStill, history->wanted(bound), history->duration_s(bound));
+    if (cause == ErrorHistory::Cause::WrongDirection)
+      return raise(ServoFault::Kind::WrongDirection, history->gone(), history->effort());
   }
-  if (wanted == 0) {
-    stands_ = 0;  // as it is to
-    return;
-  }
-  ++stands_;
-  if (stands_ < kStandsCycles || static_cast<double>(stands_) * period_s_ < kStandsS) return;
-  if (std::abs(wanted) < kStandsWay && !seen.out_of_bound) return;
-  faults.raise({ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, wanted,
-                static_cast<double>(stands_) * period_s_});
+  raise(ServoFault::Kind::FollowingError, error, bound);
 }
 
 }  // namespace rmac

@@ -61,7 +61,12 @@ TEST_F(FaultText, SaysOfALoopWhatIsWrongWithIt) {
   EXPECT_THAT(text(of_joint(ServoFault::Kind::WrongDirection, -0.1, 250)),
               HasSubstr("joint 1 (Y): it went -0.1 faster and faster against an effort of 250; look for a motor"));
   EXPECT_THAT(text(of_joint(ServoFault::Kind::StandsStill, 1, 0.02)),
-              HasSubstr("joint 1 (Y): its position stands still for 0.02 s, and it was to go 1; check the encoder"));
+              HasSubstr("joint 1 (Y): its position stands still for 0.02 s, and it was to go 1; look for what "
+                        "blocks the axis"));
+  EXPECT_THAT(
+      text(of_joint(ServoFault::Kind::EncoderFrozen, 0.02, 40)),
+      HasSubstr("joint 1 (Y): its encoder tells the same to the last digit for 0.02 s, while the effort changed "
+                "by 40: it froze, or its shaft is held fast; check the encoder"));
 }
 
 TEST_F(FaultText, NamesADrivesStateAsTheTopicOfDrivesDoes) {

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
+#include <random>
 
 #include "servo/drives/shafts.hpp"
 #include "unit/motion/servo/servo_fixture.hpp"
@@ -44,6 +46,59 @@ TEST_F(ShaftReading, SilentDriveStandsAndItsVelocityBeginsAnew) {
   EXPECT_EQ(reader_.counts(), 60);
   read(70);
   EXPECT_NEAR(reader_.rad_s(), 10 * kRadPerCount / kPeriod, 1e-9);
+}
+
+TEST_F(ShaftReading, GoesOnAtItsSpeedWhereAnAnswerIsMissing) {
+  for (const int counts : {0, 10, 20}) read(counts);
+  const double speed = reader_.rad_s();
+  for (const int gone : {30, 40, 50}) {
+    reader_.read({.position_counts = 20, .online = true, .missed = true});
+    EXPECT_NEAR(reader_.rad(), (gone - 200) * kRadPerCount, 1e-9);
+    EXPECT_EQ(reader_.rad_s(), speed);
+    EXPECT_EQ(reader_.counts(), 20) << "what was read";
+  }
+  read(60);
+  EXPECT_NEAR(reader_.rad(), (60 - 200) * kRadPerCount, 1e-12);
+  EXPECT_NEAR(reader_.rad_s(), speed, 1e-9);
+  EXPECT_EQ(reader_.counts(), 60);
+}
+
+TEST_F(ShaftReading, StandsWhereItGotToAfterThreeCyclesWithoutAnAnswer) {
+  for (const int counts : {0, 10, 20}) read(counts);
+  for (int i = 0; i < 5; ++i) reader_.read({.position_counts = 20, .online = true, .missed = true});
+  EXPECT_NEAR(reader_.rad(), (50 - 200) * kRadPerCount, 1e-9);
+  EXPECT_EQ(reader_.rad_s(), 0);
+  read(80);
+  EXPECT_NEAR(reader_.rad(), (80 - 200) * kRadPerCount, 1e-9);
+  EXPECT_EQ(reader_.rad_s(), 0) << "its velocity begins anew";
+  read(90);
+  EXPECT_NEAR(reader_.rad_s(), 10 * kRadPerCount / kPeriod, 1e-9);
+}
+
+TEST_F(ShaftReading, IsRefusedToItsLastAnswer) {
+  for (const int counts : {0, 10, 20}) read(counts);
+  reader_.read({.position_counts = 20, .online = true, .missed = true});
+  reader_.refuse();
+  EXPECT_NEAR(reader_.rad(), (20 - 200) * kRadPerCount, 1e-9);
+  reader_.take_over((std::int64_t{1} << 32) + 500, true);
+  reader_.read({.position_counts = 500, .online = true, .missed = true});
+  reader_.refuse();
+  EXPECT_EQ(reader_.counts(), (std::int64_t{1} << 32) + 500);
+}
+
+// Otherwise a loop would be told that it stands, and then that it is three times as fast.
+TEST_F(ShaftReading, HasItsSpeedThroughMissingAnswers) {
+  std::mt19937 random(5);
+  double largest = 0;
+  std::int32_t told = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const double t = i * kPeriod, at = 50'000 * std::sin(6 * t), speed = 300'000 * std::cos(6 * t) * kRadPerCount;
+    const bool misses = i > 2 && random() % 20 == 0;
+    if (!misses) told = static_cast<std::int32_t>(std::lround(at));
+    reader_.read({.position_counts = told, .online = true, .missed = misses});
+    if (i > 2) largest = std::max(largest, std::abs(reader_.rad_s() - speed));
+  }
+  EXPECT_LT(largest, 0.02 * 300'000 * kRadPerCount);
 }
 
 TEST_F(ShaftReading, WrapIsFollowed) {

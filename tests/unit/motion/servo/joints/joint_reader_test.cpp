@@ -69,14 +69,46 @@ TEST_F(JointReading, JumpIsTheChangeOfTheStep) {
 TEST_F(JointReading, JumpNeedsTwoPositionsOfASteadyJointBeforeIt) {
   make();
   for (const double at : {1.0, 2.0, 3.0}) read(at);
-  read(90, 0, 0b111, 0b110);
+  read(90);
   EXPECT_NEAR(reader_->jump(0), 86, 1e-12) << "it is found in the cycle in which it shows";
+  read(90, 0, 0b111, 0b110);
+  EXPECT_EQ(reader_->jump(0), 0) << "of a joint whose drive does not answer nobody knows a step";
+  EXPECT_FALSE(reader_->step(0));
   read(70);
   EXPECT_EQ(reader_->jump(0), 0);
+  EXPECT_FALSE(reader_->step(0));
   read(95);
   EXPECT_EQ(reader_->jump(0), 0);
+  EXPECT_EQ(reader_->step(0), 25);
   read(96);
   EXPECT_NEAR(reader_->jump(0), -24, 1e-12);
+}
+
+TEST_F(JointReading, AStopIsNoFasterThanItWasLately) {
+  make();
+  double at = 0;
+  const auto go = [&](double step) { read(at += step); };
+  for (int i = 0; i < 5; ++i) go(1);
+  for (const double step : {0.0, -0.5, -0.7, 0.2}) {
+    go(step);
+    EXPECT_TRUE(reader_->may_stop(0)) << step;
+  }
+  go(-1.2);
+  EXPECT_FALSE(reader_->may_stop(0)) << "it came with less";
+  for (int i = 0; i < 100; ++i) go(0);
+  go(0.1);
+  EXPECT_FALSE(reader_->may_stop(0)) << "long ago";
+}
+
+TEST_F(JointReading, ALateCyclesStepIsNone) {
+  make();
+  for (const double at : {1.0, 2.0, 3.0}) read(at);
+  reader_->forget_steps();
+  read(5);
+  EXPECT_EQ(reader_->jump(0), 0);
+  EXPECT_FALSE(reader_->step(0));
+  read(6);
+  EXPECT_EQ(reader_->step(0), 1);
 }
 
 TEST_F(JointReading, ForceIsCountsFromZeroInTheSensorsSense) {

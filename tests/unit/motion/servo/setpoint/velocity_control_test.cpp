@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kFollowingError = 1;  // mm, of the fixture's joints
 constexpr double kSlip = kFollowingError / 2;
+constexpr double kGives = 0.1;  // mm an N, what blocks it
 
 /// Joint 0 under velocity control. Its drive stands exactly where its setpoint is, or is blocked.
 class VelocityControlled : public ServoLoopTest {
@@ -23,7 +24,8 @@ class VelocityControlled : public ServoLoopTest {
   /// The plan goes at a steady speed, from wherever it is.
   void run(int cycles, double speed) {
     for (int i = 0; i < cycles; ++i) {
-      if (!blocked) put_at(0, report.position_set[0]);
+      if (!blocked) stands_at = report.position_set[0];
+      put_at(0, stands_at + (blocked ? kGives * report.effort[0] : 0));
       command.setpoint.velocity[0] = speed;
       command.setpoint.position[0] += speed * kPeriod;
       const double before = report.velocity_set[0];
@@ -33,6 +35,7 @@ class VelocityControlled : public ServoLoopTest {
   }
   [[nodiscard]] double wanted() const { return report.position_set[0]; }
   bool blocked = false;
+  double stands_at = 0;
   double largest_step = 0;
 };
 

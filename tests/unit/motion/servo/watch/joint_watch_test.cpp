@@ -29,21 +29,69 @@ class WatchedJoint : public testing::Test {
 
 TEST_F(WatchedJoint, IsFineWithinAllBounds) {
   for (int i = 0; i < 10; ++i) {
-    watch_.step(
-        {.jump = -0.1, .velocity = -100, .following_error = 1, .position_set = 90, .velocity_set = 1, .force = 900},
-        faults_);
+    watch_.step({.position = {.jump = -0.1},
+                 .velocity = -100,
+                 .following_error = 1,
+                 .position_set = 90,
+                 .velocity_set = 1,
+                 .force = 900},
+                faults_);
   }
   EXPECT_THAT(faults_.raised, IsEmpty()) << "ends and forces are watched under force control";
 }
 
 TEST_F(WatchedJoint, JumpsInOneCycle) {
-  watch_.step({.jump = -0.11}, faults_);
+  watch_.step({.position = {.jump = -0.11}}, faults_);
   EXPECT_THAT(faults_.raised, ElementsAre(fault(Kind::EncoderJump, -0.11, 0.1)));
+}
+
+// Its effort turns round at each corner: that is no swing, in which more may be.
+TEST_F(WatchedJoint, JumpsOnAZigzagToo) {
+  joint_.max_effort = 800;
+  for (int i = 0; i < 400; ++i) {
+    const double to_and_fro = i / 20 % 2 == 0 ? 1 : -1;
+    watch_.step({.loop = {.effort = 300 * to_and_fro, .effort_measured = true, .acceleration_set = 3000 * to_and_fro}},
+                faults_);
+  }
+  EXPECT_THAT(faults_.raised, IsEmpty());
+  watch_.step({.position = {.jump = 0.15}}, faults_);
+  EXPECT_THAT(faults_.raised, ElementsAre(fault(Kind::EncoderJump, 0.15, 0.1)));
+}
+
+// It goes at 200 mm/s and stops within some cycles: what it met is told, and not that it is behind.
+TEST_F(WatchedJoint, IsBlockedWhereItStaysBehindAtSpeed) {
+  joint_.max_effort = 800;
+  joint_.bounds.velocity = 0;
+  double set = 0, position = 0;
+  for (int i = 0; i < 60 && faults_.raised.empty(); ++i) {
+    set += 0.2;
+    position += i < 30 ? 0.2 : 0.01;
+    watch_.step(
+        {.following_error = set - position, .loop = {.effort = 300, .effort_measured = true, .position = position}},
+        faults_);
+  }
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_EQ(faults_.raised[0].kind, Kind::StandsStill);
+}
+
+// Its effort grows by little before it is behind, as with soft gains.
+TEST_F(WatchedJoint, GoesTheWrongWayWhereItRunsAwayFromItsSetpointAgainstALittleEffort) {
+  joint_.max_effort = 8000;
+  joint_.bounds.velocity = 0;
+  double position = 0.001;
+  for (int i = 0; i < 200 && faults_.raised.empty(); ++i) {
+    position *= 1.1;
+    watch_.step({.following_error = -position,
+                 .loop = {.effort = -300 * position, .effort_measured = true, .position = position}},
+                faults_);
+  }
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_EQ(faults_.raised[0].kind, Kind::WrongDirection);
 }
 
 TEST_F(WatchedJoint, WithoutABoundMayJumpAndRun) {
   joint_.bounds.jump = joint_.bounds.velocity = 0;
-  for (int i = 0; i < 5; ++i) watch_.step({.jump = 50, .velocity = 1e6}, faults_);
+  for (int i = 0; i < 5; ++i) watch_.step({.position = {.jump = 50}, .velocity = 1e6}, faults_);
   EXPECT_THAT(faults_.raised, IsEmpty());
 }
 
@@ -143,7 +191,7 @@ TEST_F(WatchedJoint, UnderForceControlGoesNoFurtherBeyondItsTravel) {
 }
 
 TEST_F(WatchedJoint, TellsAJumpBeforeTheFollowingErrorThatItMakes) {
-  watch_.step({.jump = 5, .following_error = -5}, faults_);
+  watch_.step({.position = {.jump = 5}, .following_error = -5}, faults_);
   EXPECT_THAT(faults_.raised, ElementsAre(fault(Kind::EncoderJump, 5, 0.1), fault(Kind::FollowingError, -5, 1)));
 }
 

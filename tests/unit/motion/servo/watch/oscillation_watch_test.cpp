@@ -73,6 +73,20 @@ TEST_F(SwingingJoint, IsFoundWithin50MsOrThreePeriodsWhateverTheFrequency) {
   }
 }
 
+TEST_F(SwingingJoint, IsFoundBeforeItIsHalfAsLargeAgainHoweverSlowlyItGrows) {
+  for (const double hz : {12.0, 20.0, 37.0}) {
+    for (const double a_period : {0.02, 0.05}) {
+      const double began = t_;
+      const auto size = [&](double t) { return 150 * std::exp(a_period * hz * (t - began)); };
+      const int found = run(
+          5000, [&](double t) { return size(t) * std::sin(kTurn * hz * (t - began)); },
+          [&](double) { return -10 * velocity_; });
+      ASSERT_GT(found, 0) << hz << " Hz, " << a_period;
+      EXPECT_LT(size(t_), 1.5 * 150) << hz << " Hz, " << a_period;
+    }
+  }
+}
+
 TEST_F(SwingingJoint, IsNoneWhileItsEffortTakesEnergyOutThatAForceFromOutsidePutsIn) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> share(0, 1);

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "servo/joints/range.hpp"
+
+namespace rmac {
+
+/// The last digit of a joint's encoder, which is never quite still where it resolves well. Where it went to and fro
+/// until now, or the joint went at a speed that nothing takes away within a cycle, and it tells the same from then on,
+/// it froze, or its shaft is held fast. Real-time safe.
+class EncoderDigits {
+ public:
+  /// `fast`: the way in a cycle, mm or degrees, of such a speed; 0: there is none.
+  EncoderDigits(double fast, double period_s) noexcept : fast_(fast), period_s_(period_s) {}
+
+  /// One reading, and the effort under which it was taken.
+  void note(double position, double effort) noexcept;
+  /// The joint is under control from now on: what its counter did before is no motion of it.
+  void begin(double position, double effort) noexcept;
+  /// There is none in this cycle, and none that the next one could be compared with.
+  void lose() noexcept { last_.reset(); }
+
+  /// From the last reading to this one; 0 where there was none.
+  [[nodiscard]] double step_to(double position) const noexcept { return last_ ? position - *last_ : 0; }
+  /// It tells the same for some milliseconds, as it did not before.
+  [[nodiscard]] bool froze() const noexcept;
+  [[nodiscard]] std::int64_t same() const noexcept { return same_; }  ///< readings on end
+  /// By which the effort changed while they lasted.
+  [[nodiscard]] double effort_change() const noexcept { return effort_.width(); }
+  /// By which it did so while others lasted that ended: a digit is so coarse.
+  [[nodiscard]] double usual_change() const noexcept { return usual_; }
+  /// The least step that there was; 0: there was none.
+  [[nodiscard]] double digit() const noexcept { return digit_; }
+
+ private:
+  void note_step(double step) noexcept;
+  [[nodiscard]] std::int64_t cycles(double seconds, int least) const noexcept;
+
+  double fast_, period_s_;
+  std::optional<double> last_{};
+  double last_step_ = 0;       ///< that was none of 0
+  int turns_ = 0;              ///< in which steps turned round, without a rest
+  int fast_cycles_ = 0;        ///< on end
+  bool stopped_dead_ = false;  ///< from a fast one
+  std::int64_t same_ = 0;
+  Range effort_{};
+  double usual_ = 0, digit_ = 0;
+};
+
+}  // namespace rmac
