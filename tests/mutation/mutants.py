@@ -280,6 +280,8 @@ def dropped_statement(reader, begin, end):
     assigns, at = False, begin
     while at < end:
         token, after = reader.tokens[at], reader.tokens[at + 1]
+        if token.text == "=" and after.text in ("default", "delete"):
+            return None  # a function
         if not assigns and token.kind == "name" and after.kind == "name" or token.text in (">", "*", "&", "auto") and (
                 after.kind == "name" and not assigns):
             return None  # a declaration

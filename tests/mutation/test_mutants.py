@@ -53,6 +53,7 @@ class Mutants(unittest.TestCase):
     def test_declarations_are_not_dropped(self):
         for statement in ("Lock lock(mutex);", "auto x = b;", "std::vector<int> v(3);", "const Foo& y = x;"):
             self.assertNotIn(body(";"), changed(body(statement)))
+        self.assert_left_alone("Foo::Foo(Foo&&) noexcept = default;\n")
 
     def test_conditions_and_results_are_negated(self):
         self.assert_mutant("if (auto x = g(); x) h();", "if (auto x = g(); !(x)) h();")

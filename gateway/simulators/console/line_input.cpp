@@ -37,7 +37,8 @@ std::optional<std::string> LineInput::next() {
       break;
     }
     kept_.append(read_now.data(), static_cast<std::size_t>(size));
-    if (kept_.size() > kMostKept) kept_.clear();  // no command is that long
+    // No command is that long: what is left of it is none either, and is refused as what it is.
+    if (kept_.size() > kMostKept && kept_.find('\n') == std::string::npos) kept_.resize(kMostKept);
   }
   const std::size_t end = kept_.find('\n');
   if (end == std::string::npos) return {};

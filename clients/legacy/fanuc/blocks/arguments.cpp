@@ -13,8 +13,9 @@ namespace {
 
 constexpr int kMostMacro = 99'999'999, kMostCalls = 9999;
 
-/// Of the letters from A on: the variable that each sets; 0 of those that set none. I, J and K have their own way.
-constexpr std::array<int, 26> kVariableOf{1, 2, 3, 7,  8,  9,  0,  11, 4,  5,  6,  0,  13,
+/// Of the letters from A on: the variable that each sets; 0 of those that set none, and of I, J and K, which are of
+/// sets.
+constexpr std::array<int, 26> kVariableOf{1, 2, 3, 7,  8,  9,  0,  11, 0,  0,  0,  0,  13,
                                           0, 0, 0, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26};
 
 /// I, J and K: in this order they are a set; one that goes back begins the next.

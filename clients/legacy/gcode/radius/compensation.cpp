@@ -159,15 +159,15 @@ void Compensation::give_out(double to, std::size_t place) {
   const Flat end = held.offset.at(to);
   ContourMove given = held.move;
   given.end = {end.x, end.y, held.move.end[2]};
+  const double sweep = std::max(to - held.from, 0.0);
+  if (sweep < held.offset.tolerance()) given.arc.reset();
   if (given.arc) {
-    const double sweep = std::max(to - held.from, 0.0);
     const double turns = std::floor((sweep + held.offset.tolerance()) / legacy::kTurn_rad);
-    given.arc->closed = turns > 0 && sweep - turns * legacy::kTurn_rad < held.offset.tolerance();
+    given.arc->closed = sweep - turns * legacy::kTurn_rad < held.offset.tolerance();
     given.arc->more_turns = static_cast<int>(turns) - (given.arc->closed ? 1 : 0);
     given.arc->centre[2] = tool_[2];
     if (given.arc->closed) given.end = {tool_[0], tool_[1], held.move.end[2]};
     given.arc->end = given.end;
-    if (sweep < held.offset.tolerance()) given.arc.reset();
   }
   sink_(given, place);
   tool_ = given.end;

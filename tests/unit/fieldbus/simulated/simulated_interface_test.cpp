@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <deque>
+#include <map>
 
 #include "conformance/control_interface_conformance.hpp"
 #include "rmac/fieldbus/simulated_io_interface.hpp"
@@ -241,6 +243,25 @@ TEST_F(SimulatedBus, LatchesWhereAnEdgeOfItsTouchProbeCame) {
   EXPECT_EQ(feedback_[kX].latched_counts[3], -131072);
 }
 
+TEST_F(SimulatedBus, KeepsALatchedPositionAsLongAsItsEdgeIsWantedAndNoLonger) {
+  using enum TouchProbeEdge;
+  constexpr std::array kOther{FirstFalling, FirstRising, SecondFalling, SecondRising};
+  for (const TouchProbeEdge edge : {FirstRising, FirstFalling, SecondRising, SecondFalling}) {
+    const TouchProbeEdge other = kOther.at(static_cast<std::size_t>(edge));
+    commands_[kX].touch_probe = touch_probe::latch_once(edge) | touch_probe::latch_once(other);
+    for (int i = 0; i < 3; ++i) cycle(kX, DriveWish::Off);
+    bus_.touch(kX, edge, 1);
+    for (int i = 0; i < 5; ++i) cycle(kX, DriveWish::Off);
+    EXPECT_EQ(feedback_[kX].touch_probe, 1U << touch_probe::shift_of(edge) | touch_probe::latched(edge));
+    commands_[kX].touch_probe = touch_probe::latch_once(other);
+    for (int i = 0; i < 3; ++i) cycle(kX, DriveWish::Off);
+    EXPECT_EQ(feedback_[kX].touch_probe, 1U << touch_probe::shift_of(edge)) << "it is on, and has nothing";
+    commands_[kX].touch_probe = 0;
+    for (int i = 0; i < 3; ++i) cycle(kX, DriveWish::Off);
+    EXPECT_EQ(feedback_[kX].touch_probe, 0);
+  }
+}
+
 TEST_F(SimulatedBus, TellsOfItsLimitSwitches) {
   AxisPlantParameters switched;
   switched.negative_switch_rad = -1;
@@ -248,7 +269,9 @@ TEST_F(SimulatedBus, TellsOfItsLimitSwitches) {
   SimulatedInterface bus({switched}, 0.001);
   std::vector<DriveCommand> commands(1);
   std::vector<DriveFeedback> feedback(1);
-  for (const auto& [angle, inputs] : {std::pair{0.0, 0U}, std::pair{-1.01, 1U}, std::pair{2.01, 2U}}) {
+  const std::map<double, unsigned> on{{0.0, 0U},  {-0.99, 0U}, {-1.0, 1U}, {-1.01, 1U},
+                                      {1.99, 0U}, {2.0, 2U},   {2.01, 2U}};
+  for (const auto& [angle, inputs] : on) {
     bus.plant(0).put_at(angle);
     ASSERT_TRUE(bus.exchange(commands, feedback));
     EXPECT_EQ(feedback[0].inputs, inputs) << angle;

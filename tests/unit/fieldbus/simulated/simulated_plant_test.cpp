@@ -200,6 +200,16 @@ TEST(SpindlePlant, GivesWhatALoadTakesAndIsStoppedByMoreThanItHas) {
   EXPECT_NEAR(std::abs(plant.torque_nm()), 5, 1e-9);
 }
 
+TEST(SpindlePlant, StandsInTheEnd) {
+  for (const bool powered : {true, false}) {
+    SpindlePlant plant{SpindlePlantParameters{}};
+    for (int i = 0; i < 2000; ++i) plant.advance(800, true, kCycle);
+    for (int i = 0; i < 20'000; ++i) plant.advance(0, powered, kCycle);
+    EXPECT_EQ(plant.speed_rpm(), 0) << "not nearly";
+    EXPECT_EQ(plant.torque_nm(), 0);
+  }
+}
+
 TEST(SpindlePlant, NeverTurnsFasterThanItsBoundAndRunsDownWithoutPower) {
   SpindlePlant plant{SpindlePlantParameters{}};
   for (int i = 0; i < 5000; ++i) plant.advance(1e6, true, kCycle);

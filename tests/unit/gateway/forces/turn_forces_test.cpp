@@ -192,6 +192,34 @@ TEST(MillingForces, SlicesThatJoinGiveWhatTheWholeGives) {
   }
 }
 
+/// Where each of the three ways leaves a chip, the force changes with it by its column: along y as a feed that is
+/// turned by 90° does, along z as one that plunges.
+TEST(MillingForces, ChangeWithTheFeedByTheStiffnessOfTheChip) {
+  constexpr Arc kBothWays{0.2, 1.3}, kTurned{kBothWays.entry + pi / 2, kBothWays.exit + pi / 2};
+  constexpr double kMore = 0.03;
+  for (const double re : {0.0, 2.0, 6.0}) {
+    for (const double helix : {0.0, 35.0}) {
+      const EndMill mill = EndMill::of(shape(re, helix)).value();
+      const auto mean = [&](Arc arc, double across, double along) {
+        const std::vector<EngagedSlice> slices = cut(5, arc);
+        const TurnForces found =
+            forces_over_turn(mill, kMaterial, slices, {.across_mm = across, .along_mm = along}, kRpm).value();
+        return Eigen::Vector3d(found.x_n.mean, found.y_n.mean, found.z_n.mean);
+      };
+      const std::vector<EngagedSlice> slices = cut(5, kBothWays);
+      const Eigen::Matrix3d stiffness = chip_stiffness(mill, kMaterial, slices, {.across_mm = kFeed}, 8).value().mean;
+      const double close = 1e-6 * stiffness.norm() * kMore;
+      const Eigen::Vector3d faster = mean(kBothWays, kFeed + kMore, 0) - mean(kBothWays, kFeed, 0);
+      EXPECT_LT((stiffness.col(0) * kMore - faster).norm(), close) << re << " " << helix;
+      const Eigen::Vector3d turned = mean(kTurned, kFeed + kMore, 0) - mean(kTurned, kFeed, 0);
+      const Eigen::Vector3d aside(-turned[1], turned[0], turned[2]);
+      EXPECT_LT((stiffness.col(1) * kMore - aside).norm(), close) << re << " " << helix;
+      const Eigen::Vector3d plunging = mean(kBothWays, kFeed, -kMore) - mean(kBothWays, kFeed, 0);
+      EXPECT_LT((-stiffness.col(2) * kMore - plunging).norm(), close) << re << " " << helix;
+    }
+  }
+}
+
 TEST(MillingForces, RandomEngagementsAgreeWithASumOverShortPiecesOfEdge) {
   for (unsigned seed = 0; seed < (kSanitized ? 8 : 40); ++seed) {
     std::mt19937 random(seed);

@@ -130,7 +130,9 @@ TEST(FanucReference, IsNoZeroWhereTheOffsetSaysAnother) {
   Options options;
   options.reference_mm = {{100, 200, 300}};
   options.offsets[0] = {-101, -200, 0};
-  EXPECT_THAT(refusal_of(program_of("G0 G53 X0"), options), StartsWith("5:8: --offset"));
+  EXPECT_THAT(refusal_of(program_of("G0 G53 X0"), options),
+              StartsWith("5:8: --offset has the machine's zero at X101, and --reference-point the reference point at "
+                         "X100; write the way there"));
   EXPECT_THAT(ends_of("G0 G53 Y0", options).back(), ElementsAre(0, 200, 10));
 }
 

@@ -1,6 +1,10 @@
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -124,15 +128,29 @@ TEST_F(ProgramFiles, BehindALinkAreTheOnesThatItLeadsTo) {
   EXPECT_EQ(text_of(path("real.rmac")), "new");
 }
 
-TEST_F(ProgramFiles, ThatAreDevicesGetWhatIsWhole) {
-  OutputFile output("/dev/null");
-  ASSERT_TRUE(output.open());
-  output.write(std::string(200'000, 'x'));
-  EXPECT_TRUE(output.finish());
-  EXPECT_TRUE(fs::is_character_file("/dev/null"));
-  OutputFile full("/dev/full");
-  full.write(std::string(200'000, 'x'));
-  EXPECT_FALSE(full.finish()) << "what is not written is told";
+// A FIFO and not /dev/null: who takes the one for a file puts a file in its place, and root's tests put one in /dev.
+TEST_F(ProgramFiles, ThatAreNoFilesGetWhatIsWhole) {
+  const std::string fifo = path("fifo"), text(200'000, 'x');
+  ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
+  const int reader = ::open(fifo.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  ASSERT_GE(::fcntl(reader, F_SETPIPE_SZ, 1 << 18), 200'000);
+  std::string got(300'000, ' ');
+  {
+    OutputFile output(fifo);
+    ASSERT_TRUE(output.open());
+    output.write(text);
+    EXPECT_LT(::read(reader, got.data(), got.size()), 0) << "nothing before it is whole";
+    EXPECT_TRUE(output.finish());
+    got.resize(static_cast<std::size_t>(std::max(::read(reader, got.data(), got.size()), ssize_t{0})));
+    EXPECT_TRUE(got == text);
+  }
+  EXPECT_TRUE(fs::is_fifo(fifo));
+  const auto before = std::signal(SIGPIPE, SIG_IGN);
+  OutputFile broken(fifo);
+  broken.write(text);
+  ::close(reader);
+  EXPECT_FALSE(broken.finish()) << "what is not written is told";
+  std::signal(SIGPIPE, before);
 }
 
 TEST_F(ProgramFiles, OfFoldersThatAreNotThereAreNotOpen) {

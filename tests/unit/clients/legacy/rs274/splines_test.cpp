@@ -72,6 +72,12 @@ TEST(Rs274Splines, HaveWeights) {
   for (double u = 0; u < 1; u += 0.1) EXPECT_NEAR(std::hypot(curve_at(arc, u)[0], curve_at(arc, u)[1]), 10, 1e-6);
 }
 
+TEST(Rs274Splines, MayNameTheirCodeInEachBlock) {
+  const std::string first = "G5.2 P2 L4\n", last = "G5.3";
+  EXPECT_EQ(curve_of(first + "G5.2 X1 Y1 P1\nX2 Y1 P1\nG5.2 X3 Y0 P1\n" + last),
+            curve_of(first + "X1 Y1 P1\nX2 Y1 P1\nX3 Y0 P1\n" + last));
+}
+
 TEST(Rs274Splines, AreClosedByTheirOwnCode) {
   EXPECT_EQ(ends_of("G5.2 P2 L4\nX1 Y1 P1\nX2 Y1 P1\nX3 Y0 P1\nG5.3\nG1 X4").back(), (std::vector<double>{4, 0, 10}));
   EXPECT_THAT(refusal_of(program_of("G5.2 X1 Y1 P1\nM2")), HasSubstr("between G5.2 and G5.3"));

@@ -342,15 +342,16 @@ TEST(DriveManners, RefuseToSkipWhatIsNeeded) {
     const auto checked = check(DriveManners{.skip = {{index, {}}}});
     return checked ? "no error" : checked.error().message;
   };
-  constexpr std::array<std::uint16_t, 9> kNeeded{0x1000, 0x1018, 0x1017, 0x1400, 0x1440,
-                                                 0x1800, 0x1840, 0x6040, 0x6060};
+  // Who it is, how it is watched and stored, its PDOs, its words, its mode and where it is.
+  constexpr std::array<std::uint16_t, 14> kNeeded{0x1000, 0x1018, 0x1017, 0x100C, 0x100D, 0x1010, 0x1400,
+                                                  0x1440, 0x1800, 0x1840, 0x6040, 0x6041, 0x6060, 0x6064};
   for (const std::uint16_t needed : kNeeded) {
     EXPECT_NE(refusal(needed), "no error") << std::hex << needed;
   }
   EXPECT_THAT(refusal(0x1016), HasSubstr("NoHeartbeatConsumer"));
   EXPECT_THAT(refusal(0x6007), HasSubstr("NoAbortConnection"));
   EXPECT_THAT(refusal(0x1A00), HasSubstr("FixedMapping"));
-  constexpr std::array<std::uint16_t, 7> kFree{0x1401, 0x1803, 0x6502, 0x60C2, 0x603F, 0x608F, 0x2000};
+  constexpr std::array<std::uint16_t, 9> kFree{0x1401, 0x1803, 0x6502, 0x60C2, 0x603F, 0x608F, 0x6061, 0x6065, 0x2000};
   for (const std::uint16_t free : kFree) {
     EXPECT_EQ(refusal(free), "no error") << std::hex << free;
   }

@@ -82,6 +82,28 @@ TEST_F(NodeCommunication, AbortsBlockTransfersThatBreakTheProtocol) {
   EXPECT_EQ(number(ask({0x00, 1, 2, 3, 4, 0, 0, 0}), 4, 4), 0x05040003U) << "segments count from 1";
 }
 
+TEST_F(NodeCommunication, TakesABlockWhoseChecksumIsRightAndNoOther) {
+  const auto ask = [this](const Bytes& request) {
+    receive(0x600 + kId, request);
+    return last(0x580 + kId);
+  };
+  // CRC-16-CCITT from 0 of 01 02 03 04, by another implementation (binascii.crc_hqx).
+  constexpr std::uint16_t kChecksum = 0x0D03;
+  const std::int64_t before = read(0x6085);
+  for (const int wrong : {0x0001, 0x0100, 0x8000, 0}) {
+    EXPECT_EQ(ask({0xC6, 0x85, 0x60, 0, 4, 0, 0, 0}).data[0] & 0xE3, 0xA0);
+    EXPECT_EQ(ask({0x81, 1, 2, 3, 4, 0, 0, 0}).data[0], 0xA2);
+    const auto told = static_cast<std::uint16_t>(kChecksum ^ wrong);
+    const CanFrame answer =
+        ask({0xCD, static_cast<std::uint8_t>(told), static_cast<std::uint8_t>(told >> 8), 7, 7, 7, 7, 7});  // reserved
+    if (wrong != 0) {
+      EXPECT_EQ(number(answer, 4, 4), 0x05040004U) << wrong;
+      EXPECT_EQ(read(0x6085), before) << "nothing of it counts";
+    }
+  }
+  EXPECT_EQ(read(0x6085), 0x04030201);
+}
+
 TEST_F(NodeCommunication, ChangesAMappingInTheStandardsOrderOnly) {
   EXPECT_EQ(write(0x1600, 0, 0, 1), kStateForbids) << "the PDO is valid";
   EXPECT_EQ(write(0x1400, 1, 0x206, 4), kBadValue) << "the identifier of a PDO that is valid";
@@ -204,6 +226,36 @@ TEST_F(NodeCommunication, MissesItsMastersHeartbeatAndQuickStops) {
   EXPECT_EQ(node_.nmt_state(), Node::NmtState::PreOperational);
   EXPECT_EQ(number(last(0x085), 0, 2), 0x8130U);
   EXPECT_EQ(last(0x085).data[2], 0x11) << "generic and communication error";
+}
+
+// CiA 301, 7.5.2.21: what a node does of which NMT state that misses a heartbeat.
+TEST_F(NodeCommunication, FollowsItsErrorBehaviorWhenItMissesAHeartbeat) {
+  using State = Node::NmtState;
+  struct Case {
+    int behavior;
+    std::uint8_t command;
+    State before, after;
+  };
+  constexpr int kAsInTheSheet = -1;
+  for (const Case& each :
+       {Case{kAsInTheSheet, 1, State::Operational, State::PreOperational},
+        Case{0, 1, State::Operational, State::PreOperational}, Case{0, 2, State::Stopped, State::Stopped},
+        Case{1, 1, State::Operational, State::Operational}, Case{2, 1, State::Operational, State::Stopped},
+        Case{2, 0x80, State::PreOperational, State::Stopped}}) {
+    SCOPED_TRACE(testing::Message() << each.behavior << " command " << int{each.command});
+    nmt(0x82);
+    pass(0.001);
+    if (each.behavior != kAsInTheSheet) {
+      EXPECT_EQ(write(0x1029, 1, each.behavior, 1), 0U);
+    }
+    EXPECT_EQ(write(0x1016, 1, 127 << 16 | 50, 4), 0U);
+    nmt(each.command);
+    receive(0x77F, {5});
+    pass(0.049);
+    EXPECT_EQ(node_.nmt_state(), each.before);
+    pass(0.003);
+    EXPECT_EQ(node_.nmt_state(), each.after);
+  }
 }
 
 TEST_F(NodeCommunication, KeepsWhatWasStoredOverAReset) {

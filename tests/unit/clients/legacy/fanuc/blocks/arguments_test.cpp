@@ -46,6 +46,21 @@ TEST(FanucArguments, CountWithoutAPointWhereTheyAreNoLengths) {
   EXPECT_THAT(refusal_of(program_of("G65 P9000 X10")), StartsWith("5:11: no decimal point"));
 }
 
+// As words of moves do: thousandths of a mm or degree, ten-thousandths of an inch.
+TEST(FanucArguments, CountInIncrementsWhereTheProgramDoes) {
+  Options increments;
+  increments.whole_numbers = gcode::WholeNumbers::Increments;
+  const auto x_mm = [&](const std::string& unit, const std::string& word, int number) {
+    const std::string macro = "O9000\nG0 X[#" + std::to_string(number) + "*1000.]\nM99\n";
+    return ends_of(unit + " G65 P9000 " + word, increments, macro).back().at(0);
+  };
+  EXPECT_NEAR(x_mm("G21\n", "X10", 24), 10, 1e-9);
+  EXPECT_NEAR(x_mm("G20\n", "X10", 24), 1 * 25.4, 1e-9);
+  EXPECT_NEAR(x_mm("G21\n", "X10.", 24), 10'000, 1e-9);
+  EXPECT_NEAR(x_mm("G21\n", "F10", 9), 10'000, 1e-9) << "F in mm a minute needs no point";
+  EXPECT_NEAR(x_mm("G20\n", "H10", 11), 10'000 * 25.4, 1e-9) << "a number of something";
+}
+
 TEST(FanucArguments, AreRefusedWhereTheyAreNone) {
   EXPECT_THAT(refusal_of(program_of("G65 A1.")), HasSubstr("need P"));
   EXPECT_THAT(refusal_of(program_of("G65 P9000 A1. A2.")), HasSubstr("two A words"));
