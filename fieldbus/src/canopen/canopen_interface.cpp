@@ -189,7 +189,12 @@ std::optional<std::string> CanopenInterface::silence_text(std::size_t axis) cons
   const Impl& bus = *impl_;
   const BusNode& node = bus.nodes[bus.axes[axis].node];
   const bool told_to = bus.other_master.commanded(node.boot.node(), bus.record.run()).has_value();
-  const std::string controller = bus.controller_text();
+  const CanController now = bus.port ? bus.port->controller() : CanController{};
+  if (now.link_down) {
+    return fmt::format("the interface {0} is down; bring it up with systemctl restart rmac-can@{0}",
+                       bus.config.interface);
+  }
+  const std::string controller = bus.controller_text(now);
   if (!told_to && node.silent_with_all.load(std::memory_order_relaxed)) {
     return fmt::format(
         "none of the {} nodes on {} answers: check the cable from the controller, its termination and bit rate, and "
@@ -212,9 +217,7 @@ std::optional<std::string> CanopenInterface::Impl::problem_of(const BusNode& nod
   return describe(problem, node.boot.node(), config);
 }
 
-std::string CanopenInterface::Impl::controller_text() const {
-  if (!port) return {};
-  const CanController now = port->controller();
+std::string CanopenInterface::Impl::controller_text(const CanController& now) const {
   using State = CanController::State;
   if (now.state == State::Unknown || now.state == State::ErrorActive) return {};
   const std::string errors =

@@ -56,7 +56,7 @@ struct CanopenInterface::Impl {
   /// Why a node is away, as far as it is known.
   [[nodiscard]] std::optional<std::string> problem_of(const BusNode& node) const;
   /// What the controller says where it is not well; empty elsewhere.
-  [[nodiscard]] std::string controller_text() const;
+  [[nodiscard]] std::string controller_text(const CanController& now) const;
   void reset_all() noexcept;
 
   // On the cycle

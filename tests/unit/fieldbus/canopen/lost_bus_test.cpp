@@ -108,6 +108,15 @@ TEST_F(LostBus, IsForgottenWhenItIsBack) {
   EXPECT_EQ(master_->silence_text(0), std::nullopt);
 }
 
+// As the kernel takes an interface down: first its frames are lost, and milliseconds later sockets are told.
+TEST_F(LostBus, WhoseInterfaceIsAboutToBeDownIsToldToBe) {
+  run(3);
+  wire_.cut = true;
+  cycles(2, DriveWish::Operational);
+  wire_.controller.link_down = true;
+  EXPECT_EQ(silence(0), "the interface can0 is down; bring it up with systemctl restart rmac-can@can0");
+}
+
 TEST_F(LostBus, OfOneDriveIsToldByItsController) {
   run(1);
   wire_.cut = true;
