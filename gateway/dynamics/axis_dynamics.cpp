@@ -86,10 +86,6 @@ std::span<const double> AxisDynamics::joints() const noexcept {
   return std::span(truth_).first(device_.joints.size());
 }
 
-std::span<const double> AxisDynamics::measured() const noexcept {
-  return std::span(loops_->report().position).first(device_.joints.size());
-}
-
 void AxisDynamics::cycle(const CycleSample& planned, const Beside& beside) {
   if (stopped_) return;
   if (!std::exchange(begun_, true)) approach(planned);

@@ -75,8 +75,8 @@ class AxisDynamics {
 
   /// Where the joints are in truth: behind what bends and sticks, whatever encoders tell. Those of the kinematics.
   [[nodiscard]] std::span<const double> joints() const noexcept;
-  /// Where their encoders have them.
-  [[nodiscard]] std::span<const double> measured() const noexcept;
+  /// What their servo loops tell: where encoders have them, and how far from where they were wanted.
+  [[nodiscard]] const ServoReport& report() const noexcept { return loops_->report(); }
   /// How a tip swings with the axes that bend, each of them motor against load as if no loop held either, with the
   /// joints where they are; in the frame of the link that holds the part. Empty: all are rigid.
   [[nodiscard]] std::vector<VibrationMode> modes(const Frame& tool) const;

@@ -19,21 +19,17 @@ Pass::Pass(std::vector<int> answer_delays)
     : delays_(std::move(answer_delays)), errors_(delays_.size()), moves_(delays_.size()) {}
 
 void Pass::add(const Row& row) {
-  if (row.position_set.size() < joints() || row.position.size() < joints()) return;
+  if (row.position_set.size() < joints() || row.following_error.size() < joints()) return;
   if (last_cycle_ >= 0 && row.cycle > last_cycle_ + 1) missing_ += row.cycle - last_cycle_ - 1;
   last_cycle_ = row.cycle;
-  wanted_.emplace_back(row.position_set.begin(), row.position_set.end());
-  const int most = delays_.empty() ? 0 : *std::ranges::max_element(delays_);
-  if (wanted_.size() > static_cast<std::size_t>(most) + 1) wanted_.pop_front();
   for (std::size_t j = 0; j < joints(); ++j) {
     const auto delay = static_cast<std::size_t>(delays_[j]);
     errors_[j].push_back(0);
-    moves_[j].push_back(!last_.empty() && std::abs(wanted_.back()[j] - last_[j]) > kJointStands);
-    if (delay >= wanted_.size()) continue;
-    errors_[j][cycles_ - delay] = wanted_[wanted_.size() - 1 - delay][j] - row.position[j];
+    moves_[j].push_back(!last_.empty() && std::abs(row.position_set[j] - last_[j]) > kJointStands);
+    if (delay <= cycles_) errors_[j][cycles_ - delay] = row.following_error[j];
   }
-  if (cycles_ == 0) first_ = wanted_.back();
-  last_ = wanted_.back();
+  last_.assign(row.position_set.begin(), row.position_set.end());
+  if (cycles_ == 0) first_ = last_;
   note_step(row);
   ++cycles_;
 }

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <set>
 #include <span>
 #include <vector>
@@ -18,7 +17,8 @@ class Pass {
     std::int64_t cycle = 0, move_id = 0;
     double s_mm = 0;
     bool moving = false;
-    std::span<const double> position_set, position;
+    std::span<const double> position_set;
+    std::span<const double> following_error;  ///< as it is told in this cycle
   };
   /// A cycle in which the path was gone on.
   struct Step {
@@ -28,7 +28,7 @@ class Pass {
     double along_mm = 0;  ///< from the beginning of the first move
   };
 
-  /// So many cycles before is each joint where it tells that it is.
+  /// The following error of a joint that is told in a cycle is that of so many cycles before.
   explicit Pass(std::vector<int> answer_delays);
 
   void add(const Row& row);
@@ -62,9 +62,8 @@ class Pass {
 
   std::vector<int> delays_;
   std::vector<std::vector<double>> errors_;
-  std::vector<std::vector<bool>> moves_;    ///< the setpoint, in each cycle
-  std::deque<std::vector<double>> wanted_;  ///< setpoints of the last cycles, the newest last
-  std::vector<double> first_, last_;        ///< setpoints
+  std::vector<std::vector<bool>> moves_;  ///< the setpoint, in each cycle
+  std::vector<double> first_, last_;      ///< setpoints
   std::vector<Step> steps_;
   std::set<std::int64_t> passed_;  ///< moves that ended
   std::size_t cycles_ = 0;

@@ -43,7 +43,8 @@ void append_row(const CycleSample& sample, std::string& out) {
   const std::array pose{tip[0], tip[1], tip[2], axis[0], axis[1], axis[2]};
   append_setpoint_row(
       {sample.t_s, sample.move_id, sample.s_mm, sample.feed_set_mm_s, pose, of_joints(sample.position_set),
-       of_joints(sample.velocity_set), of_joints(sample.acceleration_set), of_joints(sample.position)},
+       of_joints(sample.velocity_set), of_joints(sample.acceleration_set), of_joints(sample.position),
+       of_joints(sample.following_error)},
       out);
   append_numbers(of_joints(sample.velocity), out);
   append_numbers(of_joints(sample.effort), out);
@@ -91,7 +92,8 @@ nlohmann::json to_json(const FlightHead& head) {
                       {"max_acceleration", joint.max_acceleration},
                       {"max_effort", joint.max_effort},
                       {"resonances", to_json(joint.resonances)},
-                      {"low_pass", joint.low_pass_hz}});
+                      {"low_pass", joint.low_pass_hz},
+                      {"answer_delay", joint.answer_delay}});
   }
   nlohmann::json actuators = nlohmann::json::array();
   for (const auto& [scale, cogging] : head.actuators) {

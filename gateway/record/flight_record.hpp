@@ -29,6 +29,7 @@ struct FlightHead {
     double max_speed = 0, max_acceleration = 0, max_effort = 0;
     std::vector<Resonance> resonances;  ///< notches behind the law
     double low_pass_hz = 0;             ///< behind the law; 0: none
+    int answer_delay = 0;               ///< so many cycles before was it where it is told to be
   };
   std::string name;
   FlightCause cause = FlightCause::Demand;

@@ -112,6 +112,7 @@ Expected<> FlightRecorder::write(Request& request) {
     }
     head.first_cycle = samples.front().cycle;
     head.last_cycle = samples.back().cycle;
+    for (std::size_t j = 0; j < head.joints.size(); ++j) head.joints[j].answer_delay = samples.back().answer_delay[j];
     return write_flight_record(folder_.file_of(head.name), head, samples).map([&] {
       folder_.prune(head.cause, options_.files_kept);
     });

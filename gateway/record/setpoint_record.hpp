@@ -14,7 +14,8 @@ struct SetpointRow {
   double s_mm = 0, feed_mm_s = 0;
   std::span<const double> pose;  ///< x y z i j k of the setpoint, part frame
   std::span<const double> position_set, velocity_set, acceleration_set;
-  std::span<const double> position;  ///< measured; empty where no drives ran
+  std::span<const double> position;         ///< measured; empty where no drives ran
+  std::span<const double> following_error;  ///< where the joint was wanted when that was measured, minus `position`
 };
 
 /// Appends the columns' names, without an end of line: more columns may follow.

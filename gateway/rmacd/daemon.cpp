@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "gateway/appliance/machine.hpp"
+#include "gateway/rmacd/clock_watch.hpp"
 #include "gateway/rmacd/end_signals.hpp"
 #include "gateway/rmacd/state_lock.hpp"
 #include "gateway/server/server.hpp"
@@ -24,7 +25,7 @@ namespace rmac::gateway {
 
 namespace {
 
-constexpr std::chrono::milliseconds kTick{2};
+constexpr std::chrono::microseconds kTick{2000}, kHurriedTick{100};
 constexpr std::chrono::seconds kStopBound{10};  ///< for coming to rest before the daemon ends regardless
 
 ControllerOptions controller_options(const Configuration& configuration, std::shared_ptr<Clock> clock) {
@@ -135,7 +136,8 @@ class Daemon {
         machine_(controller_, host_, *manager_),
         server_(
             io_, machine_, [this] { return std::make_unique<Records>(*manager_); }, std::move(options)),
-        fast_(configuration.pace == Pace::AsFastAsComputed) {}
+        fast_(configuration.pace == Pace::AsFastAsComputed),
+        virtual_time_(configuration.period) {}
 
   Expected<> run(const Configuration& configuration);
 
@@ -159,6 +161,8 @@ class Daemon {
   Server server_;
   asio::steady_timer timer_{io_};
   bool fast_;
+  double told_until_s_ = 0;  ///< of the machine's time
+  ClockWatch virtual_time_;
   enum class Phase { Serving, Stopping, Leaving } phase_ = Phase::Serving;
   std::chrono::steady_clock::time_point end_by_;
   std::chrono::steady_clock::time_point last_watchdog_;
@@ -168,7 +172,10 @@ class Daemon {
 };
 
 Expected<> Daemon::run(const Configuration& configuration) {
-  controller_.on_sample([this](const CycleSample& sample) { server_.on_sample(sample); });
+  controller_.on_sample([this](const CycleSample& sample) {
+    told_until_s_ = sample.t_s;
+    server_.on_sample(sample);
+  });
   controller_.on_event([this](const Event& event) {
     if (event.kind == Event::Kind::Fault) spdlog::error("cycle {}: {}", event.cycle, event.message);
     if (event.kind == Event::Kind::FlightRecord) spdlog::info("{}", event.message);
@@ -213,8 +220,11 @@ Expected<> Daemon::run(const Configuration& configuration) {
 }
 
 void Daemon::schedule_tick() {
-  // In virtual time the machine goes as fast as its samples are taken; the sockets still get their turn in between.
-  timer_.expires_after(fast_ ? std::chrono::microseconds{100} : std::chrono::microseconds{kTick});
+  // In virtual time the machine goes as fast as its samples are taken, and as it is given what to do; the sockets still
+  // get their turn in between. At rest it keeps to the clock.
+  const bool hurries =
+      fast_ && !virtual_time_.keeps(ClockWatch::Length(told_until_s_), std::chrono::steady_clock::now());
+  timer_.expires_after(hurries ? kHurriedTick : kTick);
   timer_.async_wait([this](asio::error_code problem) {
     if (problem) return;
     tick();

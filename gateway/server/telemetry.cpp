@@ -62,12 +62,11 @@ void append_joints(const CycleSample& sample, std::string& out) {
   if (sample.truth) append_list("truth", *sample.truth, 0, joints, out);
   append_list("effort", sample.effort, 0, joints, out);
   append_list("force", sample.force, 0, joints, out);
-  std::array<double, kMaxJoints> error{};
-  for (std::size_t i = 0; i < with_held; ++i) error[i] = sample.position_set[i] - sample.position[i];
-  append_list("error", error, 0, joints, out);
+  append_list("error", sample.following_error, 0, joints, out);
   if (with_held > joints) {
     append_list("held", sample.position, joints, with_held, out);
     append_list("held_set", sample.position_set, joints, with_held, out);
+    append_list("held_error", sample.following_error, joints, with_held, out);
     append_list("held_effort", sample.effort, joints, with_held, out);
     if (sample.truth) append_list("held_truth", *sample.truth, joints, with_held, out);
   }

@@ -168,6 +168,7 @@ void ServoCycle::publish(const ServoWishes& wishes) noexcept {
     sample_.acceleration_set = report_.acceleration_set;
     sample_.position = report_.position;
     sample_.answer_delay = report_.answer_delay;
+    sample_.following_error = report_.following_error;
     sample_.truth = report_.truth;
     sample_.velocity = report_.velocity;
     sample_.effort = report_.effort;

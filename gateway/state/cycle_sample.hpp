@@ -37,6 +37,7 @@ struct CycleSample {
   std::array<double, kMaxJoints> position_set{}, velocity_set{}, acceleration_set{};
   std::array<double, kMaxJoints> position{}, velocity{}, effort{};
   std::array<std::uint8_t, kMaxJoints> answer_delay{};       ///< so many cycles before was a joint at `position`
+  std::array<double, kMaxJoints> following_error{};          ///< where it was wanted then, minus `position`
   std::optional<std::array<double, kMaxJoints>> truth;       ///< where joints really are; simulated axes alone tell it
   std::array<double, kMaxJoints> force{};                    ///< as force sensors measure it; 0 where there is none
   std::array<ContactState, kMaxJoints> contact{};            ///< what joints under force control touch

@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 from appliance import BUILD, Appliance, line, wait_for_rest
-from bending_mill import RAD_PER_MM, TuningTest, rigid
+from bending_mill import RAD_PER_MM, TuningTest, device_of, rigid
 
 PNG = b"\x89PNG\r\n\x1a\n"
 MARGIN = 40.0
@@ -167,6 +167,23 @@ class Commands(TuningTest):
         self.assertEqual(again["radius_mm"], 3)
         self.assertLess(again["circular_deviation_um"], 20)
         self.assertLess(max(map(abs, again["radial_deviation_um"])), 20)
+
+    def test_measure_following_takes_drives_that_answer_late_for_where_they_are(self):
+        """Of the same axes, late by none and by three cycles: what is on the circle is on it. The way of three cycles at F2000 is 100 µm."""
+        found = []
+        for late in (0, 3):
+            with Appliance(own_tree=True) as appliance, tempfile.TemporaryDirectory() as folder:
+                with device_of(appliance) as device:
+                    rigid(device, late_answers=[late], friction_nm=[0.001] * 8)
+                    for joint in device["Joints"]:
+                        joint["Gains"] = [gain / share for gain, share in zip(joint["Gains"], (9, 27, 3), strict=True)]
+                        joint["MaxFollowingError"] = 1
+                self.rmac(appliance, "load", "DMACXYZ")
+                words = ("measure-following", "--radius", "20", "-o", str(pathlib.Path(folder, "circle.png")))
+                found.append(json.loads(self.rmac(appliance, "--json", *words)))
+        for of in ("following_error_um", "circular_deviation_um"):
+            self.assertAlmostEqual(found[1][of], found[0][of], delta=0.3 * found[0][of] + 1, msg=found)
+        self.assertLess(found[1]["following_error_um"], 30)
 
     def test_say_what_is_missing(self):
         appliance = self.enterContext(Appliance())

@@ -164,5 +164,22 @@ class LifeCycle(unittest.TestCase):
         self.assertEqual(wanted - set(names), set())
 
 
+class AtRest(unittest.TestCase):
+    def test_an_idle_machine_in_virtual_time_is_looked_at_no_more_often_than_one_in_real_time(self):
+        """By how often the daemon's main thread runs in a cycle; on a busy computer that is rarer still."""
+        appliance = self.enterContext(Appliance())
+        self.assertEqual(appliance.rmac("load", "DMACXYZ").returncode, 0)
+        client = appliance.client()
+        client.call("subscribe", topics=["state"], rate_hz=5)
+
+        def switches():
+            lines = pathlib.Path(f"/proc/{appliance.process.pid}/status").read_text().splitlines()
+            return sum(int(line.split(":")[1]) for line in lines if "ctxt_switches" in line)
+
+        seen = [(client.wait_note("state")["cycle"], switches()) for _ in range(7)][1:]  # the first note comes at once
+        per_cycle = [(more - switched) / (later - cycle) for (cycle, switched), (later, more) in zip(seen, seen[1:])]
+        self.assertLess(min(per_cycle), 2, per_cycle)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -109,6 +109,14 @@ class Learning(unittest.TestCase):
         with device_of(self.appliance) as device:
             rigid(device, late_answers=[1])
         self.assertEqual(self.appliance.rmac("load", "DMACXYZ").returncode, 0)
+        record = self.folder / "record.csv"
+        seen = json.loads(self.run_it("--record", str(record)).stdout)["following_error"]
+        rows = list(csv.DictReader(record.read_text().splitlines()))
+        for joint, largest in enumerate(seen, start=1):
+            wanted, at, error = ([float(row[f"{of}{joint}"]) for row in rows] for of in ("q", "a", "error"))
+            for q, a, told in zip(wanted, at[1:], error[1:]):
+                self.assertAlmostEqual(told, q - a, delta=1e-9)
+            self.assertEqual(largest, max(map(abs, error)), "in the summary of a run it is none either")
         told = self.learn()
         for before, after in zip(told["passes"][0]["rms"], told["passes"][-1]["rms"], strict=True):
             self.assertLess(before, 0.005, "the way of a cycle, 33 µm, is no error")

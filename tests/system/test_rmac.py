@@ -203,7 +203,7 @@ class Programs(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (DONE, ""))
         with record.open() as file:
             rows = list(csv.DictReader(file))
-        wanted = "t_s,move_id,s_mm,feed_mm_s,x,y,z,i,j,k,q1,q2,q3,qd1,qd2,qd3,qdd1,qdd2,qdd3,a1,a2,a3".split(",")
+        wanted = "t_s,move_id,s_mm,feed_mm_s,x,y,z,i,j,k,q1,q2,q3,qd1,qd2,qd3,qdd1,qdd2,qdd3,a1,a2,a3,error1,error2,error3".split(",")
         self.assertEqual(list(rows[0]), wanted)
         times = [float(row["t_s"]) for row in rows]
         steps = {round((later - earlier) * 1000) for earlier, later in zip(times, times[1:])}

@@ -3,6 +3,7 @@
 #include <linux/can/netlink.h>
 #include <linux/if_link.h>
 #include <linux/rtnetlink.h>
+#include <net/if.h>
 
 #include <algorithm>
 #include <cstring>
@@ -62,13 +63,15 @@ CanController controller_of(std::span<const std::byte> answer) noexcept {
       head->nlmsg_len < kBeforeAttributes) {
     return {};
   }
+  const auto interface = read<ifinfomsg>(answer.subspan(NLMSG_SPACE(0)));
+  CanController told;
+  told.link_down = interface && (interface->ifi_flags & IFF_UP) == 0;
   const Bytes link = find(answer.first(head->nlmsg_len).subspan(kBeforeAttributes), IFLA_LINKINFO);
   const Bytes kind = find(link, IFLA_INFO_KIND);
   // Other kinds number their data otherwise.
   constexpr std::string_view kCan("can\0", 4);
-  if (kind.size() != kCan.size() || std::memcmp(kind.data(), kCan.data(), kCan.size()) != 0) return {};
+  if (kind.size() != kCan.size() || std::memcmp(kind.data(), kCan.data(), kCan.size()) != 0) return told;
   const Bytes data = find(link, IFLA_INFO_DATA);
-  CanController told;
   if (const auto state = read<std::uint32_t>(find(data, IFLA_CAN_STATE))) told.state = state_of(*state);
   if (const auto errors = read<can_berr_counter>(find(data, IFLA_CAN_BERR_COUNTER))) {
     told.errors = {errors->txerr, errors->rxerr};

@@ -25,13 +25,19 @@ bool BusNode::take(const CanFrame& frame, std::chrono::nanoseconds now, std::chr
     const NmtState said = heartbeat_state(frame);
     if (guarded() && said != NmtState::BootUp && !guard.take(frame)) return false;
     heard = now;
-    if (up && said != NmtState::Operational && said != NmtState::BootUp) lose(now, counters);
+    if (up && said != NmtState::Operational && said != NmtState::BootUp) {
+      lose({.kind = BootProblem::Kind::LeftOperational,
+            .object = {},
+            .expected = error_code,
+            .found = static_cast<std::uint32_t>(said)},
+           now, counters);
+    }
   }
   if (frame.id == kSdoAnswerId + id) record.sdo_answer(frame);
   boot.receive(frame, now);
   if (up && frame.id == kSdoAnswerId + id) positions.receive(frame, now);
   if (up && boot.state() != NodeBoot::State::Operational) {
-    lose(now, counters);
+    lose(boot.problem(), now, counters);
     // A boot-up message: it has started anew by itself, and waits for what it is to be told.
     if (trouble.problem().kind == BootProblem::Kind::Restarted) boot.receive(frame, now);
   }
@@ -41,7 +47,9 @@ bool BusNode::take(const CanFrame& frame, std::chrono::nanoseconds now, std::chr
 bool BusNode::watch(std::chrono::nanoseconds now, std::chrono::nanoseconds patience,
                     CanopenCounters& counters) noexcept {
   const bool was_up = up;
-  if (up && (now - heard > patience || boot.state() == NodeBoot::State::Failed)) lose(now, counters);
+  if (up && (now - heard > patience || boot.state() == NodeBoot::State::Failed)) {
+    lose(boot.problem(), now, counters);
+  }
   const bool lost = was_up && !up;
   if (!up && boot.state() == NodeBoot::State::Operational) {
     up = true;
@@ -59,11 +67,11 @@ bool BusNode::watch(std::chrono::nanoseconds now, std::chrono::nanoseconds patie
   return lost;
 }
 
-void BusNode::lose(std::chrono::nanoseconds now, CanopenCounters& counters) noexcept {
+void BusNode::lose(const BootProblem& why, std::chrono::nanoseconds now, CanopenCounters& counters) noexcept {
   ++counters.nodes_lost;
   record.lost();
-  if (shows_two(boot.problem().kind)) ++counters.duplicates;
-  trouble.note(boot.problem());
+  if (shows_two(why.kind)) ++counters.duplicates;
+  trouble.note(why);
   up = false;
   positions.abandon();
   boot.begin(now);

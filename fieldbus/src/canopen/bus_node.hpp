@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 
@@ -72,10 +73,15 @@ struct BusNode {
   std::chrono::nanoseconds heard{0};
   std::uint16_t error_code = 0;
   bool up = false;
+  /// Whether its axes answer; and, since it fell silent, whether all other nodes were silent with it: others ask for
+  /// that.
+  enum class Presence : std::uint8_t { Unheard, Present, Lost };
+  Presence presence = Presence::Unheard;
+  std::atomic<bool> silent_with_all{false};
   bool told_position = false;  ///< in this cycle: whoever asked does not know yet
 
  private:
-  void lose(std::chrono::nanoseconds now, CanopenCounters& counters) noexcept;
+  void lose(const BootProblem& why, std::chrono::nanoseconds now, CanopenCounters& counters) noexcept;
 };
 
 }  // namespace rmac::fieldbus::canopen

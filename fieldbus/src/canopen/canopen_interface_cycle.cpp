@@ -26,6 +26,8 @@ bool CanopenInterface::receive(std::span<DriveFeedback> feedback) noexcept {
       axis.forget();
       for (BusAxis::Answer& answer : axis.answers) answer.unanswered = 0;
     }
+    for (BusNode& node : bus.nodes) node.presence = BusNode::Presence::Unheard;
+    bus.other_master.forget();
     bus.next_heartbeat = bus.next_time = now;
     bus.fresh = false;
   }
@@ -34,8 +36,10 @@ bool CanopenInterface::receive(std::span<DriveFeedback> feedback) noexcept {
   bus.watch(now);
   bus.take_positions();
   bus.fill(feedback);
+  bus.note_silence(feedback);
+  const bool sound = bus.sound(now);
   bus.synced = bus.config.sync != SyncOrder::First || bus.send(sync_frame());
-  return true;
+  return sound;
 }
 
 bool CanopenInterface::send(std::span<const DriveCommand> commands) noexcept {
@@ -45,10 +49,17 @@ bool CanopenInterface::send(std::span<const DriveCommand> commands) noexcept {
   const bool sent = bus.send_cycle(commands, now);
   bus.ask_positions(commands, now);
   bus.send_asides(now);
-  const CanHealth health = bus.port->health();
-  bus.record.note(bus.counters, health, now);
-  if (sent && health.usable()) return true;
-  bus.trouble.note(health, bus.counters.unsent);
+  bus.record.note(bus.counters, bus.port->health(), now);
+  if (!bus.sound(now)) return false;
+  if (!sent) bus.trouble.note(bus.port->health(), bus.counters.unsent);
+  return sent;
+}
+
+bool CanopenInterface::Impl::sound(std::chrono::nanoseconds now) noexcept {
+  const CanHealth health = port->health();
+  const bool other_sync = other_master.sends_sync(now);
+  if (health.usable() && !other_sync) return true;
+  trouble.note(health, counters.unsent, other_sync);
   return false;
 }
 
@@ -58,7 +69,11 @@ void CanopenInterface::Impl::fetch(std::chrono::nanoseconds now) noexcept {
 }
 
 void CanopenInterface::Impl::take(const CanFrame& frame, std::chrono::nanoseconds now) noexcept {
-  if (frame.id == kSyncId) return count_sync();  // asked for where another node produces it
+  if (frame.id == kNmtId) return other_master.command(frame, record.since_start(now));
+  if (frame.id == kSyncId) {
+    if (config.sync != SyncOrder::External) other_master.sync(now);
+    return count_sync();
+  }
   for (BusAxis& axis : axes) {
     for (BusAxis::Answer& answer : axis.answers) {
       if (frame.id == answer.id) return take_answer(axis, answer, frame);
@@ -115,6 +130,26 @@ void CanopenInterface::Impl::fill(std::span<DriveFeedback> feedback) noexcept {
     feedback[i].missed = missed;
     feedback[i].online = node.up && axis.answered() && axis.unanswered() <= config.missed_answers;
     if (!axis.tells(0x603F)) feedback[i].error_code = node.error_code;
+  }
+}
+
+void CanopenInterface::Impl::note_silence(std::span<const DriveFeedback> feedback) noexcept {
+  const auto speaks = [this](const BusAxis& axis) {
+    return nodes[axis.node].up && axis.answered() && axis.unanswered() == 0;
+  };
+  const bool all_silent = nodes.size() > 1 && std::none_of(axes.begin(), axes.end(), speaks);
+  for (std::size_t place = 0; place < nodes.size(); ++place) {
+    BusNode& node = nodes[place];
+    bool online = true;
+    for (std::size_t i = 0; i < axes.size(); ++i) online = online && (axes[i].node != place || feedback[i].online);
+    if (online) {
+      node.presence = BusNode::Presence::Present;
+    } else if (node.presence == BusNode::Presence::Present) {
+      node.presence = BusNode::Presence::Lost;
+      node.silent_with_all.store(all_silent, std::memory_order_relaxed);
+    } else if (node.presence == BusNode::Presence::Lost && all_silent) {
+      node.silent_with_all.store(true, std::memory_order_relaxed);
+    }
   }
 }
 

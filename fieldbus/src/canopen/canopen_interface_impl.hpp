@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "canopen/bus_trouble.hpp"
 #include "canopen/pdo.hpp"
 #include "canopen/watch/bus_record.hpp"
+#include "canopen/watch/other_master.hpp"
 #include "rmac/fieldbus/canopen/canopen_interface.hpp"
 
 namespace rmac::fieldbus::canopen {
@@ -43,13 +45,18 @@ struct CanopenInterface::Impl {
     for (const BusAxis& axis : axes) {
       for (const BusAxis::Answer& answer : axis.answers) ids.push_back(answer.id);
     }
-    if (config.sync == SyncOrder::External) ids.push_back(kSyncId);
+    // From another master, unless SYNC is asked for.
+    ids.insert(ids.end(), {kNmtId, kSyncId});
     return ids;
   }
 
   // Off the cycle
   [[nodiscard]] Expected<> boot_all();
   [[nodiscard]] std::string problems() const;
+  /// Why a node is away, as far as it is known.
+  [[nodiscard]] std::optional<std::string> problem_of(const BusNode& node) const;
+  /// What the controller says where it is not well; empty elsewhere.
+  [[nodiscard]] std::string controller_text(const CanController& now) const;
   void reset_all() noexcept;
 
   // On the cycle
@@ -61,6 +68,9 @@ struct CanopenInterface::Impl {
     for (BusAxis& axis : axes) axis.sync();
   }
   void watch(std::chrono::nanoseconds now) noexcept;
+  /// The bus may be used: it is told before a drive is found silent because of it.
+  [[nodiscard]] bool sound(std::chrono::nanoseconds now) noexcept;
+  void note_silence(std::span<const DriveFeedback> feedback) noexcept;
   void ask_positions(std::span<const DriveCommand> commands, std::chrono::nanoseconds now) noexcept;
   void take_positions() noexcept;
   void send_asides(std::chrono::nanoseconds now) noexcept;
@@ -82,6 +92,7 @@ struct CanopenInterface::Impl {
   BusRecord record;
   std::vector<std::string> notes;  ///< of the start
   BusTrouble trouble;
+  OtherMaster other_master;
   std::chrono::nanoseconds next_heartbeat{0};
   std::chrono::nanoseconds next_time{0};
   std::size_t aside = 0;  ///< whose turn it is to send a frame beside those of the cycle

@@ -23,6 +23,12 @@ class NoCircle(Exception):
     """The record does not hold the turn."""
 
 
+def error_of(head, columns, joint):
+    """How far the joint (from 1) was in each row's cycle from where it was wanted in it: the drive tells that so many cycles later."""
+    error, delay = columns[f"error{joint}"], head["joints"][joint - 1]["answer_delay"]
+    return np.concatenate([error[delay:], np.repeat(error[-1:], delay)])
+
+
 def turn_of(head, columns, move):
     """Wanted and measured points of the turn, mm, as rows of x and y about the circle's centre."""
     rows = np.flatnonzero(columns["move_id"] == move)
@@ -32,7 +38,7 @@ def turn_of(head, columns, move):
     joints = np.column_stack([columns["q1"], columns["q2"]])[rows]
     if np.ptp(wanted - joints, axis=0).max() > 1e-6 or [joint["unit"] for joint in head["joints"][:2]] != ["mm", "mm"]:
         raise NoCircle("the first two joints are not X and Y: only such machines are measured so far")
-    measured = np.column_stack([columns["a1"], columns["a2"]])[rows] + (wanted - joints)
+    measured = wanted - np.column_stack([error_of(head, columns, joint)[rows] for joint in (1, 2)])
     angle = np.unwrap(np.arctan2(*(wanted - wanted.mean(axis=0)).T[::-1]))
     if abs(angle[-1] - angle[0]) < 2 * np.pi * 0.98:
         raise NoCircle("the record begins within the turn; let flight_recorder in rmacd.json go back further, or take a "

@@ -59,7 +59,8 @@ def draw(head, columns, path):
     joints = head["joints"]
     panels = [
         ("position", lambda j: columns[f"a{j}"]),
-        ("set - measured", lambda j: columns[f"q{j}"] - columns[f"a{j}"]),
+        # Records that know nothing of drives that answer late tell none.
+        ("following error", lambda j: columns.get(f"error{j}", columns[f"q{j}"] - columns[f"a{j}"])),
         ("velocity", lambda j: columns[f"ad{j}"]),
         ("effort", lambda j: columns[f"effort{j}"]),
     ]

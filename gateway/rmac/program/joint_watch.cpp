@@ -41,9 +41,8 @@ Result<> JointWatch::take(const nlohmann::json& params) {
 Result<> JointWatch::take(const JointSample& sample) {
   last_sample_s_ = sample.t_s;
   following_error_.resize(std::max(following_error_.size(), sample.position_set.size()));
-  for (std::size_t joint = 0; joint < std::min(sample.position_set.size(), sample.position.size()); ++joint) {
-    following_error_[joint] =
-        std::max(following_error_[joint], std::abs(sample.position_set[joint] - sample.position[joint]));
+  for (std::size_t joint = 0; joint < std::min(sample.position_set.size(), sample.following_error.size()); ++joint) {
+    following_error_[joint] = std::max(following_error_[joint], std::abs(sample.following_error[joint]));
   }
   // Waiting for the first move is no part of the record; every cycle from there on is.
   begun_ = begun_ || sample.moving;

@@ -58,7 +58,8 @@ Result<> Record::add(const JointSample& sample) {
   }
   const bool measured = !sample.position.empty();
   if (sample.pose.size() != kPoseNumbers || sample.velocity_set.size() != joints ||
-      sample.acceleration_set.size() != joints || (measured && sample.position.size() != joints)) {
+      sample.acceleration_set.size() != joints ||
+      (measured && (sample.position.size() != joints || sample.following_error.size() != joints))) {
     return fail("the appliance sent a joints sample whose lists differ in length: the record would be wrong");
   }
   if (last_cycle_ >= 0 && sample.cycle > last_cycle_ + 1) {
@@ -71,9 +72,10 @@ Result<> Record::add(const JointSample& sample) {
     }
   }
   row_.clear();
-  gateway::append_setpoint_row({sample.t_s, sample.move_id, sample.s_mm, sample.feed_mm_s, sample.pose,
-                                sample.position_set, sample.velocity_set, sample.acceleration_set, sample.position},
-                               row_);
+  gateway::append_setpoint_row(
+      {sample.t_s, sample.move_id, sample.s_mm, sample.feed_mm_s, sample.pose, sample.position_set, sample.velocity_set,
+       sample.acceleration_set, sample.position, sample.following_error},
+      row_);
   row_ += '\n';
   output_ << row_;
   ++rows_;

@@ -20,8 +20,8 @@ void scale_first(nlohmann::json& params, double share) {
   params.front() = params.front().get<double>() * share;
 }
 
-/// `measured`: empty where no drives ran.
-JointSample to_note(const gateway::CycleSample& sample, std::span<const double> measured) {
+/// `loops`: null where no drives ran.
+JointSample to_note(const gateway::CycleSample& sample, const ServoReport* loops) {
   const auto joints = [&](const auto& values) {
     return std::vector<double>(values.begin(), values.begin() + sample.joint_count);
   };
@@ -37,7 +37,10 @@ JointSample to_note(const gateway::CycleSample& sample, std::span<const double> 
   note.position_set = joints(sample.position_set);
   note.velocity_set = joints(sample.velocity_set);
   note.acceleration_set = joints(sample.acceleration_set);
-  note.position.assign(measured.begin(), measured.end());
+  if (loops != nullptr) {
+    note.position = joints(loops->position);
+    note.following_error = joints(loops->following_error);
+  }
   return note;
 }
 
@@ -227,9 +230,8 @@ void Simulator::take(const gateway::CycleSample& sample) {
   }
   // As in a record of `rmac run`: every cycle from the first move on.
   if (!record_ || !(sample.moving || record_->rows() > 0)) return;
-  const auto measured = dynamics_ != nullptr ? dynamics_->axes().measured() : std::span<const double>();
-  if (auto added = record_->add(to_note(sample, measured)); !added && failure_.empty())
-    failure_ = added.error().message;
+  const ServoReport* const loops = dynamics_ != nullptr ? &dynamics_->axes().report() : nullptr;
+  if (auto added = record_->add(to_note(sample, loops)); !added && failure_.empty()) failure_ = added.error().message;
 }
 
 void Simulator::take(const gateway::Event& event) {

@@ -95,6 +95,7 @@ std::vector<JointSample> read_joints(const nlohmann::json& params) {
     read_key(entry, "qd", sample.velocity_set);
     read_key(entry, "qdd", sample.acceleration_set);
     read_key(entry, "a", sample.position);
+    read_key(entry, "error", sample.following_error);
     samples.push_back(std::move(sample));
   }
   return samples;

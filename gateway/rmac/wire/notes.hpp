@@ -61,7 +61,7 @@ struct JointSample {
   std::int64_t cycle = 0, move_id = 0;
   bool moving = false;
   double s_mm = 0, feed_mm_s = 0;
-  std::vector<double> pose, position_set, velocity_set, acceleration_set, position;
+  std::vector<double> pose, position_set, velocity_set, acceleration_set, position, following_error;
 };
 
 [[nodiscard]] EventNote read_event(const nlohmann::json& params);

@@ -226,7 +226,7 @@ JointSeen ServoLoop::Impl::seen(std::size_t joint) const noexcept {
                        .refused = unbelieved},
           .answered = has(positions.answered(), joint),
           .velocity = joints.velocity()[joint],
-          .following_error = setpoints.position()[joint] - setpoints.gone_on(joint) - joints.position()[joint],
+          .following_error = setpoints.following_error(joint, joints.position()[joint]),
           .position_set = setpoints.position()[joint],
           .velocity_set = setpoints.velocity()[joint],
           .force = joints.force()[joint],

@@ -40,7 +40,10 @@ void ServoLoop::Impl::fill(const ServoCommand& command, ServoReport& report) con
   report.velocity_set = setpoints.velocity();
   report.acceleration_set = setpoints.acceleration();
   report.position = joints.position();
-  report.answer_delay = wiring.joint_delays();
+  report.answer_delay = parts.virtual_mode ? Wiring::Delays{} : wiring.joint_delays();
+  for (std::size_t j = 0; j < wiring.joints(); ++j) {
+    report.following_error[j] = setpoints.following_error(j, joints.position()[j]);
+  }
   report.velocity = joints.velocity();
   report.force = joints.force();
   report.effort = laws.effort();

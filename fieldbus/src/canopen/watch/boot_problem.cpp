@@ -5,6 +5,8 @@
 #include <array>
 
 #include "canopen/objects/standard_objects.hpp"
+#include "rmac/fieldbus/canopen/emergency.hpp"
+#include "rmac/fieldbus/canopen/nmt.hpp"
 
 namespace rmac::fieldbus::canopen {
 namespace {
@@ -38,6 +40,17 @@ std::string refusal(const BootProblem& refused) {
              ? fmt::format("refused {:X}h for {}: {} ({:08X}h){}", refused.expected, object, why, refused.found,
                            refused.kept ? fmt::format(", and has {:X}h there", *refused.kept) : "")
              : fmt::format("refused to tell {}: {} ({:08X}h)", object, why, refused.found);
+}
+
+std::string state_name(std::uint32_t nmt_state) {
+  switch (static_cast<NmtState>(nmt_state)) {
+    case NmtState::Stopped:
+      return "stopped";
+    case NmtState::PreOperational:
+      return "pre-operational";
+    default:
+      return fmt::format("in a state of its own ({})", nmt_state);
+  }
 }
 
 std::string need(const BootProblem& problem) {
@@ -107,6 +120,23 @@ std::string describe_alone(const BootProblem& problem, std::uint8_t node, const 
       return who +
              " sent a boot-up message in operation: it started anew, or another device came up with its node id; "
              "check its supply, and with rmac bus scan who is there";
+    case BootProblem::Kind::LeftOperational: {
+      const auto emergency = static_cast<std::uint16_t>(problem.expected);
+      return fmt::format(
+          "{} left Operational, and says that it is {}{}: it heard this master no more, or somebody else told it to; "
+          "rmac bus trace {} shows what comes",
+          who, state_name(problem.found),
+          emergency == 0 ? ""
+                         : fmt::format("; its last emergency was {:04X}h ({})", emergency, emergency_text(emergency)),
+          config.interface);
+    }
+    case BootProblem::Kind::Commanded:
+      return fmt::format(
+          "{}: another master sent NMT command {:02X}h for {}; a bus has one master, so take the other one, or the "
+          "tool, "
+          "off (rmac bus trace {} shows what it sends)",
+          who, problem.found, problem.expected == 0 ? "all nodes" : fmt::format("node {}", problem.expected),
+          config.interface);
     case BootProblem::Kind::TwoIdentities:
       return fmt::format(
           "{}: two devices have this node id: {} was told as {:X}h and as {:X}h; give each an id of its own (rmac bus "

@@ -12,15 +12,17 @@ namespace rmac::fieldbus::canopen {
 struct BootProblem {
   enum class Kind : std::uint8_t {
     None,
-    NoBootUp,   ///< it never spoke
-    NoAnswer,   ///< it spoke, but did not answer for `object`
-    Refused,    ///< it refused `object`; `found` is its abort code
-    Different,  ///< `object` is `found` where `expected` was
-    Constant,   ///< it refused to take `object`, which is what is wanted; `found` is its abort code
-    Unfit,      ///< its description does not fit: `needed` says why
-    NoStart,    ///< it is set up, and does not become operational
-    Restarts,   ///< it started anew, again and again, while it was set up
-    Restarted,  ///< it started anew while it was operational
+    NoBootUp,         ///< it never spoke
+    NoAnswer,         ///< it spoke, but did not answer for `object`
+    Refused,          ///< it refused `object`; `found` is its abort code
+    Different,        ///< `object` is `found` where `expected` was
+    Constant,         ///< it refused to take `object`, which is what is wanted; `found` is its abort code
+    Unfit,            ///< its description does not fit: `needed` says why
+    NoStart,          ///< it is set up, and does not become operational
+    Restarts,         ///< it started anew, again and again, while it was set up
+    Restarted,        ///< it started anew while it was operational
+    LeftOperational,  ///< it said that it is in the NMT state `found`; `expected` is its last emergency
+    Commanded,        ///< another master sent the NMT command `found` to the node `expected`; 0: to all
     // What shows two devices of one node id:
     TwoIdentities,  ///< `object` was told as `expected`, and as `found`
     TwoAnswers,     ///< one SYNC is answered twice, and differently

@@ -142,7 +142,7 @@ std::size_t Lesson::line_bytes() const {
 Result<> Lesson::pass() {
   gateway::Pass pass(machine_.delays);
   run_.on_cycle = [&pass](const JointSample& sample) {
-    pass.add({sample.cycle, sample.move_id, sample.s_mm, sample.moving, sample.position_set, sample.position});
+    pass.add({sample.cycle, sample.move_id, sample.s_mm, sample.moving, sample.position_set, sample.following_error});
   };
   run_.learned = learner_.next() ? learned() : Json();
   const auto report = Runner(connection_, program_, run_).run();

@@ -32,7 +32,7 @@ Setpoints::Setpoints(const ServoLoopParts& parts, const Wiring::Delays& delays, 
       learned_(parts.joints, parts.period_s),
       brake_(stop_bounds(parts.joints)) {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
-    followers_.emplace_back(joints_[j], period_s_);
+    followers_.emplace_back(joints_[j], period_s_, delays[j]);
     const double soft = has(follow_themselves, j) ? kAnything : joints_[j].max_effort / kSoft;
     force_loops_.emplace_back(joints_[j].force, period_s_, soft);
     ways_.push_back({RecentWay(delays[j]), RecentWay(delays[j])});
@@ -44,10 +44,15 @@ void Setpoints::step(const Seen& seen, FaultSink& faults) noexcept {
   const auto before = position_;
   const auto velocity_before = velocity_;
   choose(seen, faults);
-  for (std::size_t j = 0; j < joints_.size(); ++j) note_way(j, before[j], velocity_before[j]);
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    note_way(j, before[j], velocity_before[j]);
+    if (!has(seen.live, j)) ways_[j].forget();
+  }
 }
 
 void Setpoints::note_way(std::size_t joint, double position_before, double velocity_before) noexcept {
+  // What is wanted where it is has gone nowhere that it would have to follow.
+  if (pushes(joint)) return ways_[joint].forget();
   ways_[joint].position.went(position_[joint] - position_before);
   ways_[joint].velocity.went(velocity_[joint] - velocity_before);
 }

@@ -65,6 +65,10 @@ class Setpoints {
   /// How far the setpoint of a joint has gone on since the joint was where it tells in this cycle.
   [[nodiscard]] double gone_on(std::size_t joint) const noexcept { return ways_[joint].position.length(); }
   [[nodiscard]] double velocity_gone_on(std::size_t joint) const noexcept { return ways_[joint].velocity.length(); }
+  /// Where a joint was wanted when it was where it tells in this cycle, minus that.
+  [[nodiscard]] double following_error(std::size_t joint, double measured) const noexcept {
+    return position_[joint] - gone_on(joint) - measured;
+  }
   [[nodiscard]] double slip(std::size_t joint) const noexcept { return followers_[joint].slip(); }
   /// What is added for the laws alone.
   [[nodiscard]] LearnedOffsets& learned() noexcept { return learned_; }

@@ -16,8 +16,9 @@ struct JointSetpoint {
 /// nothing keeps it, the joint is where the plan has it. Real-time safe.
 class VelocityFollower {
  public:
-  /// Both must outlive it; the control method of `joint` plays no part.
-  VelocityFollower(const ServoJoint& joint, double period_s) noexcept : joint_(&joint), period_s_(period_s) {}
+  /// `joint` must outlive it; its control method plays no part. It is told where the joint was `delay` cycles before.
+  VelocityFollower(const ServoJoint& joint, double period_s, int delay = 0) noexcept
+      : joint_(&joint), period_s_(period_s), late_s_(delay * period_s) {}
 
   /// From now on on the plan, from where the joint is held.
   void begin(double held, double planned) noexcept { slip_ = held - planned; }
@@ -30,7 +31,7 @@ class VelocityFollower {
 
  private:
   const ServoJoint* joint_;
-  double period_s_;
+  double period_s_, late_s_;
   double slip_ = 0;
 };
 

@@ -46,9 +46,11 @@ RawBytes attribute(unsigned short type, const RawBytes& payload) {
 }
 
 /// As rtnl_fill_ifinfo builds it: a name before, statistics behind.
-RawBytes answer(const std::string& kind, const RawBytes& data) {
+RawBytes answer(const std::string& kind, const RawBytes& data, unsigned flags = IFF_UP) {
+  ifinfomsg interface {};
+  interface.ifi_flags = flags;
   const RawBytes body =
-      bytes_of(ifinfomsg{}) + attribute(IFLA_IFNAME, text("can0")) +
+      bytes_of(interface) + attribute(IFLA_IFNAME, text("can0")) +
       attribute(IFLA_LINKINFO, attribute(IFLA_INFO_KIND, text(kind)) + attribute(IFLA_INFO_XSTATS, RawBytes(24)) +
                                    attribute(IFLA_INFO_DATA | NLA_F_NESTED, data)) +
       attribute(IFLA_MTU, bytes_of(16U));
@@ -61,6 +63,16 @@ RawBytes answer(const std::string& kind, const RawBytes& data) {
 RawBytes controller(std::uint32_t state, can_berr_counter errors) {
   return attribute(IFLA_CAN_BITTIMING, RawBytes(32)) + attribute(IFLA_CAN_STATE, bytes_of(state)) +
          attribute(IFLA_CAN_BERR_COUNTER, bytes_of(errors));
+}
+
+// Red when only real controllers are told to be down, or others too.
+TEST(CanController, IsDownWithItsInterface) {
+  for (const char* kind : {"can", "vcan"}) {
+    const RawBytes data = controller(CAN_STATE_ERROR_ACTIVE, {});
+    EXPECT_FALSE(controller_of(answer(kind, data, IFF_UP | IFF_RUNNING)).link_down);
+    EXPECT_TRUE(controller_of(answer(kind, data, IFF_RUNNING)).link_down);
+  }
+  EXPECT_FALSE(controller_of({}).link_down) << "nobody says so";
 }
 
 TEST(CanController, IsWhatTheKernelTells) {

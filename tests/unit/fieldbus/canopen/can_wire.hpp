@@ -38,9 +38,18 @@ class CanWire {
   [[nodiscard]] Time now() const { return now_; }
   /// A frame from nobody.
   void inject(const CanFrame& frame) { received_.push_back(frame); }
+  /// A frame of another master, which the drives obey.
+  void intrude(const CanFrame& frame) {
+    received_.push_back(frame);
+    for (auto& drive : drives_) drive->receive(frame, now_);
+    deliver();
+  }
 
   bool full = false;                            ///< the transmit queue takes nothing
   bool cut = false;                             ///< nothing passes either way
+  bool bus_off = false;                         ///< so the master's controller says
+  bool link_down = false;                       ///< the master's interface
+  CanController controller;                     ///< how the master's is
   std::function<void(const CanFrame&)> listen;  ///< everything that passes
   /// A gateway on the way from the drives: what it makes of a frame, and after which times it hands it on, once for
   /// each. None: there is no gateway.
@@ -53,6 +62,10 @@ class CanWire {
     bool send(const CanFrame& frame) noexcept override {
       if (wire_.full) {
         ++health_.queue_full;
+        return false;
+      }
+      if (wire_.link_down) {
+        ++health_.send_failures;
         return false;
       }
       ++health_.sent;
@@ -71,7 +84,13 @@ class CanWire {
     }
     void wait(Time at_most) noexcept override { wire_.pass(at_most); }
     [[nodiscard]] Time now() const noexcept override { return wire_.now_; }
-    [[nodiscard]] CanHealth health() const noexcept override { return health_; }
+    [[nodiscard]] CanHealth health() const noexcept override {
+      CanHealth health = health_;
+      health.bus_off = wire_.bus_off;
+      health.link_down = wire_.link_down;
+      return health;
+    }
+    [[nodiscard]] CanController controller() const noexcept override { return wire_.controller; }
 
    private:
     CanWire& wire_;

@@ -314,8 +314,8 @@ TEST(AxisDynamics, TellsWhereTheLoadIsBehindWhatBends) {
   constexpr double kForce_n = 200, kStiffness_n_mm = 25'000;
   motion.rest(1.5, {.force_n = {kForce_n, 0, 0}});
   ASSERT_FALSE(axes->stopped()) << axes->stopped()->why;
-  EXPECT_NEAR(axes->joints()[0] - axes->measured()[0], kForce_n / kStiffness_n_mm, 0.0008);
-  EXPECT_NEAR(axes->measured()[0], 0, 0.0021) << "the encoder at the motor sees nothing of it but its rest_band";
+  EXPECT_NEAR(axes->joints()[0] - axes->report().position[0], kForce_n / kStiffness_n_mm, 0.0008);
+  EXPECT_NEAR(axes->report().position[0], 0, 0.0021) << "the encoder at the motor sees nothing of it but its rest_band";
 }
 
 TEST(AxisDynamics, RefusesWhatHasNoModelOfItsAxes) {

@@ -50,8 +50,8 @@ class Loop {
         offset = axis_.gain_sign * told[0];
       }
       const double shown = plant.motor + axis_.noise_mm * normal_(random_);
-      const double position[1] = {shown}, set[1] = {wanted.q};
-      pass.add({cycle, wanted.move, wanted.s, wanted.moves, set, position});
+      const double following_error[1] = {wanted.q - shown}, set[1] = {wanted.q};
+      pass.add({cycle, wanted.move, wanted.s, wanted.moves, set, following_error});
       const double error = wanted.q + offset - shown;
       integral += error * kPeriod;
       const double rate = wanted.v + (offset - before) / kPeriod - (shown - shown_before) / kPeriod;

@@ -8,8 +8,8 @@ namespace {
 class PassTest : public testing::Test {
  protected:
   void add(std::int64_t move, double s, double wanted, double measured, bool moving = true) {
-    const double set[1] = {wanted}, at[1] = {measured};
-    pass_.add({cycle_++, move, s, moving, set, at});
+    const double set[1] = {wanted}, error[1] = {wanted - measured};
+    pass_.add({cycle_++, move, s, moving, set, error});
   }
   Pass pass_{{0}};
   std::int64_t cycle_ = 0;
@@ -39,20 +39,21 @@ TEST_F(PassTest, ARetraceAndAMoveThatComesAgainAreNoticed) {
   EXPECT_TRUE(pass_.went_back());
   Pass another({0});
   for (const std::int64_t move : {1, 2, 1}) {
-    const double set[1] = {1}, at[1] = {1};
-    another.add({0, move, 1, true, set, at});
+    const double set[1] = {1}, error[1] = {0};
+    another.add({0, move, 1, true, set, error});
   }
   EXPECT_TRUE(another.went_back());
 }
 
-TEST_F(PassTest, HoldsWhatIsToldLateAgainstWhereTheJointWasWantedThen) {
+TEST_F(PassTest, TakesWhatIsToldLateForAnErrorOfTheCycleBefore) {
   Pass late({2});
   for (int i = 0; i < 50; ++i) {
-    const double set[1] = {0.1 * i}, at[1] = {0.1 * (i - 2) - 0.005};
-    late.add({i, 1, 0.1 * i, true, set, at});
+    const double set[1] = {0.1 * i}, error[1] = {0.001 * (i - 2)};
+    late.add({i, 1, 0.1 * i, true, set, error});
   }
   late.end();
-  for (std::size_t cycle = 0; cycle < 47; ++cycle) EXPECT_NEAR(late.error(0, cycle), 0.005, 1e-12) << cycle;
+  for (std::size_t cycle = 0; cycle < 47; ++cycle)
+    EXPECT_NEAR(late.error(0, cycle), 0.001 * static_cast<double>(cycle), 1e-12);
   EXPECT_EQ(late.error(0, 49), 0) << "nobody has told yet";
   EXPECT_EQ(late.error(0, 4900), 0);
 }

@@ -156,6 +156,7 @@ TEST_F(FlightRecord, SaysOfEachCycleWhatItsSampleSaid) {
       const std::string number = std::to_string(j + 1);
       ASSERT_EQ(std::stod(row.at("q" + number)), sample.position_set[j]);
       ASSERT_EQ(std::stod(row.at("a" + number)), sample.position[j]);
+      ASSERT_EQ(std::stod(row.at("error" + number)), sample.following_error[j]);
       ASSERT_EQ(std::stod(row.at("effort" + number)), sample.effort[j]);
       ASSERT_EQ(row.at("torque_permille" + number), std::to_string(sample.torque_permille[j]));
       ASSERT_EQ(row.at("statusword" + number), std::to_string(sample.statusword[j]));
@@ -236,6 +237,34 @@ TEST_F(FlightRecord, BeginsWithTheDrivesThatItIsOf) {
   EXPECT_THAT(record.columns, Not(testing::Contains("statusword3")));
   ASSERT_EQ(record.rows.size(), 10U);
   EXPECT_EQ(record.cycle(0), 11);
+}
+
+// Red when an error is made of positions of one row: drives answer late.
+TEST_F(FlightRecord, TellsFollowingErrorsAndHowLateTheirDrivesAnswer) {
+  CycleHistory history(100);
+  for (std::int64_t cycle = 1; cycle <= 20; ++cycle) {
+    CycleSample sample = with_drives(cycle, 2);
+    sample.position_set = {10, 20};
+    sample.position = {9, 19};
+    sample.following_error = {0.25, -0.125};
+    sample.answer_delay = {1, 3};
+    history.add(sample);
+  }
+  const FlightFolder folder(folder_.path());
+  std::string name;
+  {
+    FlightRecorder recorder({folder_.path(), 0.015, 20}, 0.001, history);
+    FlightHead head;
+    head.cycle = 20;
+    head.joints.resize(2);
+    name = recorder.request(std::move(head)).value_or("");
+  }
+  const ReadRecord record = read_record(folder, name);
+  ASSERT_FALSE(record.rows.empty());
+  EXPECT_EQ(record.rows[0].at("error1"), "0.25");
+  EXPECT_EQ(record.rows[0].at("error2"), "-0.125");
+  EXPECT_EQ(record.head["joints"][0]["answer_delay"], 1);
+  EXPECT_EQ(record.head["joints"][1]["answer_delay"], 3);
 }
 
 // Red when a column of zeros stands for what a real drive does not tell, or rows of both kinds stand under one head.

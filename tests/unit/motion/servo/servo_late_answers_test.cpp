@@ -42,6 +42,7 @@ TEST_P(ServoLateAnswers, ADriveThatFollowsExactlyHasNoErrorAtAnySpeed) {
     go_on(step);
     ASSERT_EQ(report.fault.kind, ServoFault::Kind::None) << "cycle " << i << ", " << step / kPeriod << " mm/s";
     ASSERT_NEAR(seen_error(), 0, kCount) << "cycle " << i;
+    ASSERT_NEAR(report.following_error[0], 0, kCount) << "as it is told, in cycle " << i;
   }
   EXPECT_EQ(report.position_set[0], command.setpoint.position[0]) << "what is told is what is";
   EXPECT_NEAR(report.position[0], was_.front(), kCount) << "and what was measured";
@@ -62,10 +63,12 @@ TEST_P(ServoLateAnswers, ADriveThatIsBehindIsSeenToBeAsFarBehindAsItIs) {
   engage();
   for (int i = 0; i < 20; ++i) go_on(0.2, 0.3);
   EXPECT_NEAR(seen_error(), 0.3, kCount);
+  EXPECT_NEAR(report.following_error[0], 0.3, kCount);
   EXPECT_NEAR(laws[0]->last.velocity_setpoint - laws[0]->last.velocity, 0, 2 * kCount / kPeriod);
   go_on(0.2, 1.1);
   EXPECT_EQ(report.fault.kind, ServoFault::Kind::FollowingError);
   EXPECT_NEAR(report.fault.value, 1.1, kCount);
+  EXPECT_EQ(report.following_error[0], report.fault.value) << "what stops it is what is told";
 }
 
 TEST_P(ServoLateAnswers, AVelocityDriveThatFollowsIsSentTheSetpointsVelocityAlone) {
@@ -104,6 +107,55 @@ TEST_P(ServoLateAnswers, AJointThatIsEngagedAnewHasNoErrorWhereverItWasPut) {
   was_.clear();
   engage();
   EXPECT_NEAR(seen_error(), 0, kCount);
+}
+
+// Red when the way of a joint that nobody controls is taken for that of its setpoint.
+TEST_P(ServoLateAnswers, AJointThatIsPushedByHandIsInNoError) {
+  build();
+  for (int i = 0; i < 30; ++i) {
+    put_at(0, 0.3 * i);
+    cycle();
+    ASSERT_EQ(report.following_error[0], 0);
+  }
+  EXPECT_NEAR(report.position[0], 8.7, kCount);
+  EXPECT_EQ(report.answer_delay[0], GetParam());
+}
+
+TEST_P(ServoLateAnswers, InVirtualModeNothingIsLate) {
+  ServoLoopParts made = parts();
+  made.virtual_mode = true;
+  made.virtual_start = {1, 2, 3};
+  build(std::move(made));
+  engage();
+  for (int i = 0; i < 30; ++i) {
+    go_on(0.3);
+    ASSERT_EQ(report.following_error[0], 0);
+  }
+  EXPECT_NEAR(report.position[0], 10, 1e-9);
+  EXPECT_EQ(report.answer_delay[0], 0);
+}
+
+// Red when the way since its answer counts as what kept it from going.
+TEST_P(ServoLateAnswers, UnderVelocityControlItSlipsNowhereAsLongAsItFollows) {
+  ServoLoopParts made = parts();
+  made.joints[0].method = ControlMethod::Velocity;
+  build(std::move(made));
+  engage();
+  const double step = 0.8 / GetParam();  // seen to be behind by more than half of MaxFollowingError
+  for (int i = 0; i < 100; ++i) {
+    go_on(step);
+    ASSERT_EQ(report.position_set[0], command.setpoint.position[0]) << "cycle " << i;
+  }
+  EXPECT_EQ(loop->slipped(0), 0);
+  command.setpoint.velocity[0] = 80;
+  for (int i = 0; i < 200; ++i) {  // it is blocked
+    command.setpoint.position[0] += 0.08;
+    cycle();
+    ASSERT_EQ(report.state, ServoState::Engaged) << "cycle " << i;
+  }
+  EXPECT_LT(loop->slipped(0), -14);
+  EXPECT_NEAR(report.following_error[0], std::min(0.5 + 0.08 * GetParam(), 0.9) + 0.08, 0.02)
+      << "half of MaxFollowingError, the way of the cycles until it tells where it is, and that of one";
 }
 
 INSTANTIATE_TEST_SUITE_P(Cycles, ServoLateAnswers, testing::Values(1, 2, 3, 5, kMostAnswerDelay));

@@ -16,6 +16,7 @@ struct CanController {
 
   State state = State::Unknown;              ///< Unknown: there is no controller (a virtual bus), or it is not told
   std::optional<ErrorCounters> errors = {};  ///< none: the driver does not tell them
+  bool link_down = false;                    ///< its interface is down; of a virtual bus too
 };
 
 /// "error-active", "bus-off", "unknown".

@@ -20,6 +20,7 @@ enum class NmtCommand : std::uint8_t {
 /// What a heartbeat says (7.2.8.3.2.2). `BootUp` is said once, when a node has come up (7.2.8.3.3).
 enum class NmtState : std::uint8_t { BootUp = 0x00, Stopped = 0x04, Operational = 0x05, PreOperational = 0x7F };
 
+inline constexpr std::uint16_t kNmtId = 0x000;
 inline constexpr std::uint16_t kSyncId = 0x080;
 inline constexpr std::uint16_t kTimeId = 0x100;
 inline constexpr std::uint16_t kEmergencyId = 0x080;  ///< plus the node's id, as the following ones

@@ -20,6 +20,8 @@ struct ServoReport {
   std::array<double, kMaxJoints> position_set{}, velocity_set{}, acceleration_set{};
   std::array<double, kMaxJoints> position{}, velocity{};
   std::array<std::uint8_t, kMaxJoints> answer_delay{};  ///< so many cycles before was a joint at `position`
+  /// Where it was wanted then, minus `position`: what its bound and its law are about.
+  std::array<double, kMaxJoints> following_error{};
   /// Positions at the loads, whatever encoders say, for who judges the loop: it sees nothing of them. None where a
   /// drive does not tell (`DigitalControlInterface::tells_load`).
   std::optional<std::array<double, kMaxJoints>> truth;

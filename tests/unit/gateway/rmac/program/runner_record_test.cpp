@@ -27,10 +27,10 @@ TEST_F(RunnerTest, RecordsEveryCycleFromTheFirstMotionOn) {
                   {"q", {at}},
                   {"qd", {0}},
                   {"qdd", {0}},
-                  {"a", {measured}}};
+                  {"a", {measured}},
+                  {"error", {at == 1 ? -0.25 : 0.125}}};
     };
-    appliance_.push("joints",
-                    {{"samples", {sample(1, false, 0, 0), sample(2, true, 1, 0.75), sample(3, false, 2, 2)}}});
+    appliance_.push("joints", {{"samples", {sample(1, false, 0, 0), sample(2, true, 1, 0), sample(3, false, 2, 1)}}});
     appliance_.push_event(Kind::MoveDone, {{"move_id", params.at("MoveID")}, {"t_s", 0.003}});
     return Answer(true);
   });
@@ -39,11 +39,13 @@ TEST_F(RunnerTest, RecordsEveryCycleFromTheFirstMotionOn) {
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->record_rows, 2U) << "standing before the first move is no part of it";
   EXPECT_TRUE(report->every_cycle_seen);
-  EXPECT_THAT(report->following_error, ElementsAre(0.25));
+  EXPECT_THAT(report->following_error, ElementsAre(0.25))
+      << "as the appliance has it, whose drives answer a cycle late";
   EXPECT_THAT(report->record_files, ElementsAre(options_.record_file));
   std::ifstream file(options_.record_file);
   const std::vector<std::string> lines{std::istream_iterator<std::string>(file), {}};
-  EXPECT_THAT(lines, testing::SizeIs(3));
+  EXPECT_THAT(lines, ElementsAre(testing::EndsWith("q1,qd1,qdd1,a1,error1"), testing::EndsWith(",1,0,0,0,-0.25"),
+                                 testing::EndsWith(",2,0,0,1,0.125")));
   EXPECT_EQ(appliance_.params_of("subscribe").back(), (json{{"topics", {"joints"}}, {"rate_hz", 1e6}}));
 }
 

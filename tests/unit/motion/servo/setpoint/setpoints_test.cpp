@@ -135,6 +135,27 @@ TEST_F(ChosenSetpoints, JointThatIsPushedIsWantedWhereItIs) {
   EXPECT_EQ(setpoints_->force_loop(1).effort(), pushed) << "it is pushed as hard as it may be";
 }
 
+// Red when the way that a part gives way counts as that of a setpoint, which a joint whose drive answers late is held
+// against.
+TEST_F(ChosenSetpoints, JointThatIsPushedOrLetGoIsWantedWhereItIsHoweverLateItTells) {
+  parts_.joints[1].method = ControlMethod::Force;
+  parts_.joints[1].max_effort = 100;
+  make({3, 3, 3}, 0);
+  wanted_force_[1] = -50;
+  force_[1] = -20;
+  for (int i = 0; i < 40; ++i) {
+    setpoints_->begin_cycle();
+    measured_[1] -= 0.01;
+    measured_[2] += 0.5;
+    step(true, 0b011);
+  }
+  ASSERT_TRUE(setpoints_->pushes(1));
+  for (const std::size_t joint : {1U, 2U}) {
+    EXPECT_EQ(setpoints_->position()[joint], measured_[joint]);
+    EXPECT_EQ(setpoints_->gone_on(joint), 0);
+  }
+}
+
 TEST_F(ChosenSetpoints, JointThatIsPushedLetsGoOfItsPartAsItStops) {
   parts_.joints[1].method = ControlMethod::Force;
   for (ServoJoint& joint : parts_.joints) joint.force.max_acceleration = 1000;

@@ -23,7 +23,8 @@ class ProgramCommands : public CommandBench {
                          << "\n";
     appliance_.handles("RMAC_CAM.MoveToPathTarget", [this](const json& params) {
       using Kind = gateway::Event::Kind;
-      appliance_.push("joints", {{"samples", {{{"t_s", 1.0}, {"moving", true}, {"q", {1.0}}, {"a", {0.75}}}}}});
+      appliance_.push(
+          "joints", {{"samples", {{{"t_s", 1.0}, {"moving", true}, {"q", {1.0}}, {"a", {0.5}}, {"error", {-0.25}}}}}});
       appliance_.push_event(Kind::MoveStarted, {{"move_id", params.at("MoveID")}, {"t_s", 1.0}});
       appliance_.push_event(Kind::MoveDone, {{"move_id", params.at("MoveID")}, {"t_s", 1.5}});
       return gateway::Answer(true);
