@@ -4,6 +4,7 @@ namespace rmac::fieldbus::canopen {
 
 void BusNode::start(std::chrono::nanoseconds now) noexcept {
   up = false;
+  silent_with_all.store(false, std::memory_order_relaxed);
   trouble.forget();
   record.forget();
   boot.forget_identity();

@@ -175,7 +175,8 @@ BusReport CanopenInterface::report() const {
     for (std::size_t axis = 0; axis < bus.axes.size(); ++axis) {
       if (bus.axes[axis].node == place) node.axes.push_back(axis);
     }
-    node.problem = bus.problem_of(bus.nodes[place]);
+    const BootProblem problem = bus.problem_of(bus.nodes[place]);
+    if (problem.kind != BootProblem::Kind::None) node.problem = describe(problem, node.node, bus.config);
     told.nodes.push_back(std::move(node));
   }
   return told;
@@ -188,33 +189,32 @@ std::string CanopenInterface::fault_text() const {
 std::optional<std::string> CanopenInterface::silence_text(std::size_t axis) const {
   const Impl& bus = *impl_;
   const BusNode& node = bus.nodes[bus.axes[axis].node];
-  const bool told_to = bus.other_master.commanded(node.boot.node(), bus.record.run()).has_value();
   const CanController now = bus.port ? bus.port->controller() : CanController{};
   if (now.link_down) {
     return fmt::format("the interface {0} is down; bring it up with systemctl restart rmac-can@{0}",
                        bus.config.interface);
   }
   const std::string controller = bus.controller_text(now);
-  if (!told_to && node.silent_with_all.load(std::memory_order_relaxed)) {
+  const BootProblem problem = bus.problem_of(node);
+  const auto told = [&] { return describe(problem, node.boot.node(), bus.config); };
+  if (spoke(problem.kind)) return told();
+  if (node.silent_with_all.load(std::memory_order_relaxed)) {
     return fmt::format(
         "none of the {} nodes on {} answers: check the cable from the controller, its termination and bit rate, and "
-        "the "
-        "supply of the drives{}",
+        "the supply of the drives{}",
         bus.nodes.size(), bus.config.interface, controller.empty() ? "" : "; " + controller);
   }
-  if (auto problem = bus.problem_of(node)) return problem;
+  if (problem.kind != BootProblem::Kind::None) return told();
   if (controller.empty()) return {};
   return fmt::format("the drive does not answer, and {}: check cable, termination and bit rate, and the drive's power",
                      controller);
 }
 
-std::optional<std::string> CanopenInterface::Impl::problem_of(const BusNode& node) const {
-  BootProblem problem = node.trouble.problem();
+BootProblem CanopenInterface::Impl::problem_of(const BusNode& node) const {
   if (const auto told = other_master.commanded(node.boot.node(), record.run())) {
-    problem = {.kind = BootProblem::Kind::Commanded, .object = {}, .expected = told->node, .found = told->command};
+    return {.kind = BootProblem::Kind::Commanded, .object = {}, .expected = told->node, .found = told->command};
   }
-  if (problem.kind == BootProblem::Kind::None) return {};
-  return describe(problem, node.boot.node(), config);
+  return node.trouble.problem();
 }
 
 std::string CanopenInterface::Impl::controller_text(const CanController& now) const {

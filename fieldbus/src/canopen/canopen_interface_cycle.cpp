@@ -27,12 +27,12 @@ bool CanopenInterface::receive(std::span<DriveFeedback> feedback) noexcept {
       for (BusAxis::Answer& answer : axis.answers) answer.unanswered = 0;
     }
     for (BusNode& node : bus.nodes) node.presence = BusNode::Presence::Unheard;
-    bus.other_master.forget();
     bus.next_heartbeat = bus.next_time = now;
-    bus.fresh = false;
   }
   ++bus.counters.cycles;
   bus.fetch(now);
+  // What another master said before, nobody knows when.
+  if (std::exchange(bus.fresh, false)) bus.other_master.forget();
   bus.watch(now);
   bus.take_positions();
   bus.fill(feedback);
@@ -134,21 +134,17 @@ void CanopenInterface::Impl::fill(std::span<DriveFeedback> feedback) noexcept {
 }
 
 void CanopenInterface::Impl::note_silence(std::span<const DriveFeedback> feedback) noexcept {
-  const auto speaks = [this](const BusAxis& axis) {
-    return nodes[axis.node].up && axis.answered() && axis.unanswered() == 0;
-  };
-  const bool all_silent = nodes.size() > 1 && std::none_of(axes.begin(), axes.end(), speaks);
+  const bool all_silent = nodes.size() > 1 && std::none_of(feedback.begin(), feedback.end(),
+                                                           [](const auto& words) { return words.online; });
   for (std::size_t place = 0; place < nodes.size(); ++place) {
     BusNode& node = nodes[place];
     bool online = true;
     for (std::size_t i = 0; i < axes.size(); ++i) online = online && (axes[i].node != place || feedback[i].online);
     if (online) {
       node.presence = BusNode::Presence::Present;
-    } else if (node.presence == BusNode::Presence::Present) {
+    } else if (node.presence != BusNode::Presence::Unheard) {
       node.presence = BusNode::Presence::Lost;
       node.silent_with_all.store(all_silent, std::memory_order_relaxed);
-    } else if (node.presence == BusNode::Presence::Lost && all_silent) {
-      node.silent_with_all.store(true, std::memory_order_relaxed);
     }
   }
 }

@@ -54,7 +54,7 @@ struct CanopenInterface::Impl {
   [[nodiscard]] Expected<> boot_all();
   [[nodiscard]] std::string problems() const;
   /// Why a node is away, as far as it is known.
-  [[nodiscard]] std::optional<std::string> problem_of(const BusNode& node) const;
+  [[nodiscard]] BootProblem problem_of(const BusNode& node) const;
   /// What the controller says where it is not well; empty elsewhere.
   [[nodiscard]] std::string controller_text(const CanController& now) const;
   void reset_all() noexcept;

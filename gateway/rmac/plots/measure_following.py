@@ -25,7 +25,10 @@ class NoCircle(Exception):
 
 def error_of(head, columns, joint):
     """How far the joint (from 1) was in each row's cycle from where it was wanted in it: the drive tells that so many cycles later."""
-    error, delay = columns[f"error{joint}"], head["joints"][joint - 1]["answer_delay"]
+    name = f"error{joint}"
+    if name not in columns or "answer_delay" not in head["joints"][joint - 1]:
+        raise NoCircle("the record tells no following errors, as those of an older appliance; update that, too")
+    error, delay = columns[name], head["joints"][joint - 1]["answer_delay"]
     return np.concatenate([error[delay:], np.repeat(error[-1:], delay)])
 
 

@@ -20,6 +20,8 @@ namespace {
 
 /// Files of its own: a folder that every system has, and that no module has any business with.
 constexpr const char* kTemporaryFolder = "/sys";
+constexpr int kBusyTries = 200;
+constexpr useconds_t kBusyPauseUs = 1000;
 
 /// Who the process was before its user namespace, in which that is not known.
 uid_t user = 0;
@@ -52,7 +54,13 @@ std::optional<std::string> close_file_system(const Bounds& bounds) {
   if (mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0) return refused("making its mounts its own");
   mount_attr closed{};
   closed.attr_set = MOUNT_ATTR_RDONLY | MOUNT_ATTR_NOSUID | MOUNT_ATTR_NODEV;
-  if (mount_setattr(AT_FDCWD, "/", AT_RECURSIVE, &closed, sizeof(closed)) != 0) {
+  int done = mount_setattr(AT_FDCWD, "/", AT_RECURSIVE, &closed, sizeof(closed));
+  // On a busy computer it was seen that a mount counts as written for a moment, though nobody holds a file in it.
+  for (int i = 0; done != 0 && errno == EBUSY && i < kBusyTries; ++i) {
+    usleep(kBusyPauseUs);
+    done = mount_setattr(AT_FDCWD, "/", AT_RECURSIVE, &closed, sizeof(closed));
+  }
+  if (done != 0) {
     return refused("making the file system read-only (a change of root must be one of the mounts, not chroot)");
   }
   // The processes of its own namespace, which is itself alone. Where parts of /proc are hidden, as a service manager

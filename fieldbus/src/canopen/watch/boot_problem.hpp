@@ -39,6 +39,10 @@ struct BootProblem {
   const DriveDescription* drive = nullptr;  ///< its description; null: none
 };
 
+/// It was operational, and said itself what became of it, or was told to by another: it is not silent.
+[[nodiscard]] constexpr bool spoke(BootProblem::Kind kind) noexcept {
+  return kind >= BootProblem::Kind::Restarted;
+}
 /// Two devices have the node's id.
 [[nodiscard]] constexpr bool shows_two(BootProblem::Kind kind) noexcept {
   return kind >= BootProblem::Kind::TwoIdentities;

@@ -8,7 +8,7 @@ namespace rmac {
 namespace {
 
 /// Share of the following-error bound that the joint may be behind its setpoint; and with the way that it goes until it
-/// tells where it is, which leaves room for that of the next cycle.
+/// tells where it is, and that of the next cycle.
 constexpr double kMostBehind = 0.5;
 constexpr double kMostSeen = 0.9;
 
@@ -24,7 +24,9 @@ double speed_before_end(double way, double deceleration, double period_s) noexce
 JointSetpoint VelocityFollower::step(const JointSetpoint& planned, double held, double measured) noexcept {
   const JointBounds& bounds = joint_->bounds;
   const double most = joint_->max_following_error;
-  const double behind = std::min(kMostBehind * most + std::abs(planned.velocity) * late_s_, kMostSeen * most);
+  const double speed = std::abs(planned.velocity);
+  const double behind = std::min(kMostBehind * most + speed * late_s_,
+                                 std::max(kMostBehind * most, kMostSeen * most - speed * period_s_));
   const double from = std::clamp(held, measured - behind, measured + behind);
   const auto fastest = [&](double way) { return speed_before_end(way, bounds.stop_deceleration, period_s_); };
   const double velocity =

@@ -1,5 +1,8 @@
 // What becomes of the bus itself, of all drives on it, or of a second master: whom a stop names.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+
+#include <array>
 
 #include "rmac/fieldbus/canopen/nmt.hpp"
 #include "unit/fieldbus/canopen/canopen_bench.hpp"
@@ -146,6 +149,37 @@ TEST_F(LostBus, IsNotTakenForBrokenWhereAnotherMasterStopsAllDrives) {
   wire_.intrude(nmt_frame(NmtCommand::Stop, 0));
   cycles(2, DriveWish::Operational);
   EXPECT_THAT(silence(0), HasSubstr("another master sent NMT command 02h for all nodes"));
+}
+
+TEST_F(LostBus, IsNotTakenForBrokenWhereAnotherMasterResetsOneDriveAfterTheOther) {
+  run(3);
+  for (const std::uint8_t node : std::array<std::uint8_t, 3>{1, 2, 3})
+    wire_.intrude(nmt_frame(NmtCommand::ResetCommunication, node));
+  cycles(2, DriveWish::Operational);
+  for (const std::size_t axis : {0U, 1U, 2U})
+    EXPECT_THAT(silence(axis), HasSubstr(fmt::format("NMT command 82h for node {}", axis + 1)));
+}
+
+// As after a computer that stood still: the drives heard no master for longer than they bear.
+TEST_F(LostBus, IsNotTakenForBrokenWhereAllDrivesLeaveOperationByThemselves) {
+  run(2);
+  for (const std::uint16_t id : std::array<std::uint16_t, 2>{0x701, 0x702})
+    wire_.inject({.id = id, .size = 1, .data = {0x7F}});
+  cycle(DriveWish::Operational);
+  EXPECT_THAT(silence(0), AllOf(HasSubstr("left Operational"), Not(HasSubstr("none of"))));
+}
+
+TEST_F(LostBus, IsNotNamedForTheOneThatStaysAwayWhenTheOthersAreBack) {
+  run(3);
+  wire_.cut = true;
+  cycles(2, DriveWish::Operational);
+  wire_.cut = false;
+  wire_.gateway = [](CanFrame& frame) {
+    return (frame.id & 0x7FU) == 1 ? std::vector<test::CanWire::Time>() : std::vector{test::CanWire::Time(0)};
+  };
+  cycles(3000, DriveWish::Off);
+  ASSERT_TRUE(feedback_[1].online);
+  EXPECT_THAT(silence(0), Not(HasSubstr("none of the")));
 }
 
 TEST_F(LostBus, IsNotBlamedForADriveThatLeavesOperationByItself) {
