@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rmac {
 
@@ -168,10 +169,13 @@ void StandingWatch::watch_way(const ResponseSeen& seen, double went, FaultSink& 
 void StandingWatch::raise_standing(const Stretch& stretch, const ResponseSeen& seen, FaultSink& faults) const noexcept {
   if (froze()) return raise_frozen(faults);
   if (slips()) return;
-  const double away = seen.position_set - stretch.from;
-  const bool to_and_fro = stretch.way > kToAndFro * std::abs(away);
-  faults.raise({ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, to_and_fro ? stretch.way : away,
-                static_cast<double>(stretch.cycles) * period_s_});
+  // What is told is all the time for which it stands, as far as it is known.
+  const Stretch longest = lately(std::numeric_limits<double>::infinity(), 0);
+  const Stretch& told = stands(longest) ? longest : stretch;
+  const double away = seen.position_set - told.from;
+  const bool to_and_fro = told.way > kToAndFro * std::abs(away);
+  faults.raise({ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, to_and_fro ? told.way : away,
+                static_cast<double>(told.cycles) * period_s_});
 }
 
 void StandingWatch::raise_frozen(FaultSink& faults) const noexcept {
