@@ -17,6 +17,7 @@ constexpr double kFadesS = 0.02;
 JointReader::JointReader(const ServoLoopParts& parts, const Wiring& wiring, Transmission& transmission)
     : joints_(parts.joints),
       period_s_(parts.period_s),
+      fades_(std::exp(-parts.period_s / kFadesS)),
       transmission_(transmission),
       efforts_(*parts.actuator_map, wiring, parts.actuators) {}
 
@@ -46,7 +47,7 @@ void JointReader::read_jump(std::size_t joint, double position, bool steady) noe
   if (shown.history > 0 && steady) shown.step = step;
   shown.jump = steady && shown.history == 2 ? step - (shown.last - shown.before) : 0;
   shown.may_stop = std::abs(step) <= shown.fastest + joints_[joint].bounds.jump / 2;
-  shown.fastest *= std::exp(-period_s_ / kFadesS);
+  shown.fastest *= fades_;
   if (shown.history > 0) shown.fastest = std::max(shown.fastest, std::abs(step));
   shown.before = shown.last;
   shown.last = position;

@@ -56,6 +56,7 @@ class JointReader {
 
   std::span<const ServoJoint> joints_;
   double period_s_;
+  double fades_;  ///< share of a step that is left of it in the next cycle
   Transmission& transmission_;
   MeasuredEfforts efforts_;
   std::array<double, kMaxJoints> position_{}, velocity_{};

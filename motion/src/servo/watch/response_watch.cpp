@@ -60,10 +60,8 @@ void ResponseWatch::forget_direction(double error) noexcept {
 
 // What ran into something comes back from it, faster and faster, and no faster than it came.
 bool ResponseWatch::rebounds(double way) noexcept {
-  constexpr double kForgetsS = 0.02;
-  const double fades = std::exp(-period_s_ / kForgetsS);
-  back_ = std::max(fades * back_, -way);
-  forth_ = std::max(fades * forth_, way);
+  back_ = std::max(fades_ * back_, -way);
+  forth_ = std::max(fades_ * forth_, way);
   return std::abs(way) <= (way > 0 ? back_ : forth_);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -22,6 +23,7 @@ class ResponseWatch {
       : joint_(&joint),
         index_(static_cast<std::uint32_t>(index)),
         period_s_(period_s),
+        fades_(std::exp(-period_s / kForgetsS)),
         standing_(joint, index, period_s),
         lately_(period_s, kSampleS),
         longer_(period_s, kLongSampleS) {}
@@ -35,6 +37,7 @@ class ResponseWatch {
   void rest(std::optional<double> position = std::nullopt) noexcept;
 
  private:
+  static constexpr double kForgetsS = 0.02;
   static constexpr double kSampleS = 0.001, kLongSampleS = 0.01;
   [[nodiscard]] bool rebounds(double way) noexcept;
   void forget_direction(double error) noexcept;
@@ -43,6 +46,7 @@ class ResponseWatch {
   const ServoJoint* joint_;
   std::uint32_t index_;
   double period_s_;
+  double fades_;  ///< share of a way that is left of it in the next cycle
 
   bool begun_ = false;
   double last_position_ = 0, last_way_ = 0;  ///< in the last cycle in which its drives answered
