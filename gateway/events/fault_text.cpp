@@ -178,8 +178,7 @@ std::string joint_cause(const ServoFault& fault, const std::string& at) {
       return fmt::format(
           "{}: its servo loop swings at about {:.3g} Hz, its effort by {:.3g} either way; look for loose mechanics or "
           "for what holds the joint, load it with softer loops (`rmac load --soften 8`, or by more where it swings "
-          "then, too), and have "
-          "`rmac tune` find gains and filters for it",
+          "then, too), and have `rmac tune` find gains and filters for it",
           at, fault.value, fault.bound);
     case ServoFault::Kind::WrongDirection:
       return fmt::format(
@@ -194,10 +193,8 @@ std::string joint_cause(const ServoFault& fault, const std::string& at) {
     case ServoFault::Kind::EncoderFrozen:
       return fmt::format(
           "{}: its encoder tells the same to the last digit for {:.3g} s, while the effort changed by {:.3g}: it "
-          "froze, "
-          "or its shaft is held fast; check the encoder, its cable, its coupling and the brake, and look where the "
-          "axis "
-          "really is, then reset and find the reference again",
+          "froze, or its shaft is held fast; check the encoder, its cable, its coupling and the brake, and look where "
+          "the axis really is, then reset and find the reference again",
           at, fault.value, fault.bound);
     case ServoFault::Kind::EncoderJump:
       return fmt::format(

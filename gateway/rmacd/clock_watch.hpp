@@ -18,6 +18,7 @@ class ClockWatch {
   [[nodiscard]] bool keeps(Length machine, Time now) noexcept {
     if (!keeps_ && now - since_ < kWhile) return false;
     const Length elapsed = now - since_, gone = machine - from_;
+    if (gone <= Length(0) && elapsed <= 2 * period_) return keeps_;  // no cycle was due
     keeps_ = gone >= elapsed / 2 - period_ && gone <= 2 * elapsed + 2 * period_;
     since_ = now;
     from_ = machine;

@@ -73,12 +73,9 @@ struct BusNode {
   std::chrono::nanoseconds heard{0};
   std::uint16_t error_code = 0;
   bool up = false;
-  /// Whether its axes answer; and, since it fell silent, whether all other nodes were silent with it: others ask for
-  /// that.
-  enum class Presence : std::uint8_t { Unheard, Present, Lost };
-  Presence presence = Presence::Unheard;
-  std::atomic<bool> silent_with_all{false};
-  bool told_position = false;  ///< in this cycle: whoever asked does not know yet
+  bool was_present = false;                  ///< all its axes answered, since the bus was started
+  std::atomic<bool> silent_with_all{false};  ///< when it last was silent, so were all others; any thread
+  bool told_position = false;                ///< in this cycle: whoever asked does not know yet
 
  private:
   void lose(const BootProblem& why, std::chrono::nanoseconds now, CanopenCounters& counters) noexcept;

@@ -13,8 +13,7 @@ std::string BusTrouble::text(const std::string& interface) const {
     case Kind::OtherSync:
       return fmt::format(
           "another node sends SYNC, too, and drives act on setpoints of another cycle: a second master, or a drive "
-          "that "
-          "is set up for it (bit 30 of 1005h); rmac bus trace {} shows what comes. Take it off, or set sync to "
+          "that is set up for it (bit 30 of 1005h); rmac bus trace {} shows what comes. Take it off, or set sync to "
           "\"external\" where it is to pace the machine",
           interface);
     case Kind::Unsent:

@@ -26,7 +26,7 @@ bool CanopenInterface::receive(std::span<DriveFeedback> feedback) noexcept {
       axis.forget();
       for (BusAxis::Answer& answer : axis.answers) answer.unanswered = 0;
     }
-    for (BusNode& node : bus.nodes) node.presence = BusNode::Presence::Unheard;
+    for (BusNode& node : bus.nodes) node.was_present = false;
     bus.next_heartbeat = bus.next_time = now;
   }
   ++bus.counters.cycles;
@@ -140,12 +140,8 @@ void CanopenInterface::Impl::note_silence(std::span<const DriveFeedback> feedbac
     BusNode& node = nodes[place];
     bool online = true;
     for (std::size_t i = 0; i < axes.size(); ++i) online = online && (axes[i].node != place || feedback[i].online);
-    if (online) {
-      node.presence = BusNode::Presence::Present;
-    } else if (node.presence != BusNode::Presence::Unheard) {
-      node.presence = BusNode::Presence::Lost;
-      node.silent_with_all.store(all_silent, std::memory_order_relaxed);
-    }
+    node.was_present = node.was_present || online;
+    if (!online && node.was_present) node.silent_with_all.store(all_silent, std::memory_order_relaxed);
   }
 }
 

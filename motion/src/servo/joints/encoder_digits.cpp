@@ -7,10 +7,10 @@ namespace rmac {
 
 namespace {
 
-constexpr int kTurns = 12;          // of the last digit: it is never quite still
-constexpr double kRests_s = 0.005;  // then it is
+constexpr int kTurns = 12;         // of the last digit: it is never quite still
+constexpr double kRestsS = 0.005;  // then it is
 constexpr int kRestsCycles = 5;
-constexpr double kNoticed_s = 0.003;
+constexpr double kNoticedS = 0.003;
 constexpr int kNoticedCycles = 3;
 constexpr double kNoStep = 1e-9;  // what a transmission rounds
 constexpr double kFastDigits = 5;
@@ -38,7 +38,7 @@ void EncoderDigits::note(double position, double effort) noexcept {
     effort_.add(effort);
     return;
   }
-  if (same_ > cycles(kRests_s, kRestsCycles)) {
+  if (same_ > cycles(kRestsS, kRestsCycles)) {
     turns_ = 0;
     usual_ = std::max(usual_, effort_.width());
   }
@@ -57,7 +57,7 @@ void EncoderDigits::note_step(double step) noexcept {
 }
 
 bool EncoderDigits::froze() const noexcept {
-  return (turns_ >= kTurns || stopped_dead_) && same_ >= cycles(kNoticed_s, kNoticedCycles);
+  return (turns_ >= kTurns || stopped_dead_) && same_ >= cycles(kNoticedS, kNoticedCycles);
 }
 
 }  // namespace rmac

@@ -15,10 +15,10 @@ constexpr double kOfBound = 0.8;  // of MaxFollowingError: what it was to go whe
 constexpr double kStretchWay = 0.1, kStretchS = 0.001;
 constexpr double kStandsShare = 0.25;  // of what it was to go, and was pushed to: what blocks it gives way
 constexpr double kDeadShare = 0.01;    // of what it was to go: by whatever it was pushed
-constexpr double kMostly = 2;
-constexpr double kHoldsIt = 0.15;    // of MaxEffort, that friction takes where it turns round
-constexpr double kToAndFro = 1.5;    // of the way that is left of it
-constexpr double kLeastRange = 0.1;  // of MaxFollowingError: a path that trembles by less is none to follow
+constexpr double kMostly = 2;          // times MaxAcceleration, that all its effort gives a joint that is free
+constexpr double kHoldsIt = 0.15;      // of MaxEffort, that friction takes where it turns round
+constexpr double kToAndFro = 1.5;      // of the way that is left of it
+constexpr double kLeastRange = 0.1;    // of MaxFollowingError: a path that trembles by less is none to follow
 
 constexpr double kDeadStop = 10;        // of MaxAcceleration within a cycle: no brake and no wall does that
 constexpr int kRestsCycles = 5;         // of the setpoint

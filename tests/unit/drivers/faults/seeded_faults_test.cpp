@@ -45,6 +45,13 @@ TEST(SeededFault, AnEncoderThatFreezesAtACreepIsFoundBeforeTheJointHasGoneFar) {
   }
 }
 
+// At 280 mm/s a loop that took it for a standstill gave 70 % of its effort against it, and then all, and swung of that.
+TEST(SeededFault, AnAnswerThatIsMissingAtSpeedLeavesALoopInPeace) {
+  const Outcome outcome = seeded(102053);
+  EXPECT_TRUE(outcome.right_cause) << outcome.told;
+  EXPECT_STREQ(to_string(outcome.fault.kind), "None") << outcome.told;
+}
+
 // Nobody drives them but the loop, and by little more than friction takes.
 TEST(SeededFault, ALoopThatSwingsByLittleMoreThanFrictionTakesIsFoundInTime) {
   for (const unsigned seed : {339U, 801U, 1207U}) {

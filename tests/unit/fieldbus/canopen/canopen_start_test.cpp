@@ -1,12 +1,15 @@
 // What a start of the bus leaves behind of the run before, and of a start that fails.
 #include <gtest/gtest.h>
 
+#include "rmac/fieldbus/canopen/nmt.hpp"
 #include "unit/fieldbus/canopen/canopen_bench.hpp"
 
 namespace rmac::fieldbus::canopen {
 namespace {
 
+using std::chrono::milliseconds;
 using test::CanopenBench;
+using test::CanWire;
 using test::PowerStates;
 using test::VirtualDrive;
 
@@ -44,6 +47,22 @@ TEST_F(CanopenBench, TakesNoDriveForPresentThatHasNotAnsweredSinceTheStart) {
     ASSERT_FALSE(feedback_[0].online) << "cycle " << i;
     ASSERT_FALSE(feedback_[0].missed) << "nothing was expected yet";
   }
+}
+
+// The phase of another's SYNC is not the master's, and it may come late: drives act on what they were told last before
+// they are reset.
+TEST_F(CanopenBench, LetsASyncOfAnotherPassBeforeItResetsDrives) {
+  wire_.add(1);
+  make({{"node", {1}}}, {{"sync", "external"}});
+  start();
+  CanWire::Time told{}, reset{};
+  wire_.listen = [&](const CanFrame& frame) {
+    if (frame.id == 0x201) told = wire_.now();
+    if (frame.id == nmt_frame(NmtCommand::ResetCommunication, 1).id) reset = wire_.now();
+  };
+  master_->stop();
+  constexpr milliseconds kCycle{1};
+  EXPECT_GE(reset - told, kCycle + std::chrono::microseconds(500)) << "the phase, and half a cycle late";
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace rmac::gateway {
 namespace {
 
@@ -37,6 +39,15 @@ TEST_F(Watched, IsSeenAtOnceToRunAheadOrToStand) {
     ASSERT_TRUE(run(milliseconds(100), milliseconds(2), 1));
     EXPECT_FALSE(run(milliseconds(4), milliseconds(4), speed)) << speed;
     EXPECT_FALSE(run(milliseconds(500), milliseconds(1), speed)) << speed;
+  }
+}
+
+// The daemon looks every 2 ms where it need not look more often.
+TEST_F(Watched, IsSeenToStandByLooksOfTwoMillisecondsWhateverTheCycle) {
+  for (const int period : {1, 2, 4}) {
+    watch_ = ClockWatch(milliseconds(period));
+    ASSERT_TRUE(run(milliseconds(200), milliseconds(std::max(2, period)), 1)) << period;
+    EXPECT_FALSE(run(milliseconds(2 * period + 4), milliseconds(2), 0)) << period;
   }
 }
 
