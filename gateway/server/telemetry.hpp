@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -36,10 +37,15 @@ class TopicPace {
   [[nodiscard]] bool on() const noexcept { return every_ != 0; }
   [[nodiscard]] double every_cycles() const noexcept { return every_; }
   /// With the first cycle after `since`: samples are told some time after they were taken, and one from before a client
-  /// asked would tell it of a machine that it has changed meanwhile.
+  /// asked would tell it of a machine that it has changed meanwhile. A topic that is told already goes on without a
+  /// gap.
   void start(double every_cycles, std::int64_t since) noexcept {
+    if (on()) {
+      next_ = std::max(first_, next_ + std::min(every_cycles - every_, 0.0));
+    } else {
+      next_ = first_ = static_cast<double>(since + 1);
+    }
     every_ = every_cycles;
-    next_ = static_cast<double>(since + 1);
   }
   void stop() noexcept { every_ = 0; }
   /// Whether this cycle's sample is due; counts it when so.
@@ -54,6 +60,7 @@ class TopicPace {
 
  private:
   double every_ = 0;
+  double first_ = 0;  ///< the first cycle that may be told
   double next_ = 0;
 };
 

@@ -115,6 +115,29 @@ TEST(Subscriptions, TellNothingOfCyclesBeforeTheyWereAskedFor) {
   }
 }
 
+TEST(Subscriptions, GoOnWithoutAGapWhenTheyAreAskedForAnew) {
+  for (const char* topic : {"joints", "drives", "animation"}) {
+    SCOPED_TRACE(topic);
+    Topics topics;
+    topics.start({topic}, 1000);
+    EXPECT_EQ(topics.batched(100), (Counts{{topic, 100}}));
+    topics.Subscriptions::start({topic}, 1000, 130);  // while the samples of 30 cycles wait still to be told
+    EXPECT_EQ(topics.batched(100), (Counts{{topic, 100}}));
+    topics.start({topic}, 10);
+    EXPECT_EQ(topics.batched(100), (Counts{{topic, 1}}));
+    topics.start({topic}, 1000);
+    EXPECT_EQ(topics.batched(100), (Counts{{topic, 100}}));
+  }
+}
+
+TEST(Subscriptions, AskedForTwiceBeforeTheFirstSampleTellNothingOfCyclesBefore) {
+  Topics topics;
+  topics.Subscriptions::start({"joints"}, 10, 700);
+  topics.Subscriptions::start({"joints"}, 1000, 750);
+  EXPECT_EQ(topics.batched(700), Counts{});
+  EXPECT_EQ(topics.batched(100), (Counts{{"joints", 100}}));
+}
+
 TEST(Subscriptions, OweTheFirstStateWithoutACycleAndTheLastOne) {
   Topics topics;
   topics.owe_state();
