@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "servo/drives/shaft_torques.hpp"
+#include "servo/drives/cogging_map.hpp"
 #include "servo/joints/position_correction.hpp"
 #include "servo/joints/wiring.hpp"
 #include "servo/setpoint/force_loop.hpp"
@@ -118,10 +118,10 @@ Expected<> check_cogging(const ServoActuator& actuator, const std::string& who) 
   double most = 0;
   for (const Cogging::Harmonic& one : actuator.cogging.harmonics) {
     most += std::hypot(one.cosine_nm, one.sine_nm);
-    if (one.order >= 1 && one.order <= ShaftTorques::kHighestOrder) continue;
+    if (one.order >= 1 && one.order <= CoggingMap::kHighestOrder) continue;
     return failure(MinorCode::InvalidParameterValue,
                    "servo loop: " + who + " has cogging of " + std::to_string(one.order) +
-                       " periods a turn; there are 1 to " + std::to_string(ShaftTorques::kHighestOrder));
+                       " periods a turn; there are 1 to " + std::to_string(CoggingMap::kHighestOrder));
   }
   if (most > 0 && actuator.mode != DriveMode::CyclicSyncTorque &&
       !actuator.bus->interface->takes_torque_offset(actuator.axis)) {

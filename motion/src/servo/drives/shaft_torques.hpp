@@ -2,10 +2,12 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "rmac/motion/machine_size.hpp"
 #include "rmac/motion/ports/actuator_map.hpp"
 #include "rmac/motion/servo/servo_loop_parts.hpp"
+#include "servo/drives/cogging_map.hpp"
 #include "servo/faults/fault_sink.hpp"
 #include "servo/joints/index_set.hpp"
 
@@ -14,10 +16,8 @@ namespace rmac {
 /// What each motor is to turn with, in N·m at its shaft. Real-time safe.
 class ShaftTorques {
  public:
-  static constexpr int kHighestOrder = 1000;  ///< of cogging: more is refused as its machine is made
-
   /// Both must outlive it.
-  ShaftTorques(const ActuatorMap& map, std::span<const ServoActuator> actuators, double period_s) noexcept;
+  ShaftTorques(const ActuatorMap& map, std::span<const ServoActuator> actuators, double period_s);
 
   /// The torques that give the joints their efforts at these positions. Where there is no number for a motor, that is a
   /// fault, and none has a torque.
@@ -27,7 +27,7 @@ class ShaftTorques {
   void take_over(std::size_t actuator, double torque_nm) noexcept { torque_[actuator] = torque_nm; }
 
   /// Some motor's cogging is known.
-  [[nodiscard]] bool know_cogging() const noexcept { return cogging_ != 0; }
+  [[nodiscard]] bool know_cogging() const noexcept { return have_cogging_ != 0; }
   /// Takes the motors' own torque away, where they will be when this cycle's torque acts: from the `measured` shaft
   /// angles on as fast as those that are wanted go. Measured, because cogging pulls from place to place like a spring,
   /// by a negative stiffness half of the way, which a loop may be too soft to hold. Of the motors in `followed`.
@@ -40,7 +40,8 @@ class ShaftTorques {
   const ActuatorMap& map_;
   std::span<const ServoActuator> actuators_;
   double period_s_;
-  IndexSet cogging_ = 0;   ///< those that have a map of it
+  std::vector<CoggingMap> cogging_;  ///< of each motor
+  IndexSet have_cogging_ = 0;
   IndexSet followed_ = 0;  ///< in the last cycle
   std::array<double, kMaxJoints> torque_{}, wanted_before_{};
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "servo/joints/cycles_of.hpp"
+
 namespace rmac {
 
 namespace {
@@ -17,9 +19,10 @@ constexpr double kFastDigits = 5;
 
 }  // namespace
 
-std::int64_t EncoderDigits::cycles(double seconds, int least) const noexcept {
-  return std::max<std::int64_t>(least, static_cast<std::int64_t>(std::ceil(seconds / period_s_ - 1e-9)));
-}
+EncoderDigits::EncoderDigits(double fast, double period_s) noexcept
+    : fast_(fast),
+      rests_cycles_(cycles_of(kRestsS, period_s, kRestsCycles)),
+      noticed_cycles_(cycles_of(kNoticedS, period_s, kNoticedCycles)) {}
 
 void EncoderDigits::begin(double position, double effort) noexcept {
   last_ = position;
@@ -38,7 +41,7 @@ void EncoderDigits::note(double position, double effort) noexcept {
     effort_.add(effort);
     return;
   }
-  if (same_ > cycles(kRestsS, kRestsCycles)) {
+  if (same_ > rests_cycles_) {
     turns_ = 0;
     usual_ = std::max(usual_, effort_.width());
   }
@@ -57,7 +60,7 @@ void EncoderDigits::note_step(double step) noexcept {
 }
 
 bool EncoderDigits::froze() const noexcept {
-  return (turns_ >= kTurns || stopped_dead_) && same_ >= cycles(kNoticedS, kNoticedCycles);
+  return (turns_ >= kTurns || stopped_dead_) && same_ >= noticed_cycles_;
 }
 
 }  // namespace rmac

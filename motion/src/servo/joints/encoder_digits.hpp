@@ -13,7 +13,7 @@ namespace rmac {
 class EncoderDigits {
  public:
   /// `fast`: the way in a cycle, mm or degrees, of such a speed; 0: there is none.
-  EncoderDigits(double fast, double period_s) noexcept : fast_(fast), period_s_(period_s) {}
+  EncoderDigits(double fast, double period_s) noexcept;
 
   /// One reading, and the effort under which it was taken.
   void note(double position, double effort) noexcept;
@@ -36,9 +36,9 @@ class EncoderDigits {
 
  private:
   void note_step(double step) noexcept;
-  [[nodiscard]] std::int64_t cycles(double seconds, int least) const noexcept;
 
-  double fast_, period_s_;
+  double fast_;
+  std::int64_t rests_cycles_, noticed_cycles_;  ///< readings on end that are a rest, and that are noticed
   std::optional<double> last_{};
   double last_step_ = 0;       ///< that was none of 0
   int turns_ = 0;              ///< in which steps turned round, without a rest

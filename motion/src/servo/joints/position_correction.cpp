@@ -32,6 +32,7 @@ void PositionCorrection::follow(double wanted_velocity, double period_s) noexcep
     to_ = wanted;
     crossed_s_ = 0;
   }
+  if (crossed_s_ >= kCrossingS) return set_side(to_);
   crossed_s_ = std::min(crossed_s_ + period_s, kCrossingS);
   const double angle = 2 * std::numbers::pi * crossed_s_ / kCrossingS;
   const double way = to_ - from_;
@@ -55,9 +56,10 @@ double PositionCorrection::slope(double shown) const noexcept {
 
 double PositionCorrection::shown(double actual) const noexcept {
   const double on_flank = actual + side_ * half_backlash_;
-  double shown = on_flank;
+  double shown = on_flank - error(on_flank);
+  if (pitch_.errors.size() < 2) return shown;
   // Each pass shrinks the miss to a tenth at least.
-  for (int pass = 0; pass < 16; ++pass) shown = on_flank - error(shown);
+  for (int pass = 1; pass < 16; ++pass) shown = on_flank - error(shown);
   return shown;
 }
 

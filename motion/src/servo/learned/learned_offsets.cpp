@@ -38,6 +38,8 @@ void LearnedOffsets::go_on(Joint& joint, double wanted, bool jumps) const noexce
   joint.wanted = wanted;
   joint.rest_rate -= period_s_ * kFading * (2 * joint.rest_rate + kFading * joint.rest);
   joint.rest += period_s_ * joint.rest_rate;
+  // What fades would end in denormal numbers, which are slow.
+  if (std::abs(joint.rest) < kFaded && std::abs(joint.rest_rate) < kFaded) joint.rest = joint.rest_rate = 0;
   const double before = joint.offset;
   const double step = joint.bound * kFastest * period_s_;
   joint.offset = std::clamp(wanted + joint.rest, before - step, before + step);

@@ -40,6 +40,7 @@ class LearnedOffsets {
   static constexpr double kLargestPart = 0.25;  ///< of what a joint may fall behind
   static constexpr double kFading = 50;         ///< 1/s: of both poles
   static constexpr double kFastest = 250;       ///< 1/s: bounds a second, whatever the path says: 40 Hz between them
+  static constexpr double kFaded = 1e-12;       ///< mm or degrees, and of them a second
 
  private:
   struct Joint {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "servo/joints/cycles_of.hpp"
+
 namespace rmac {
 
 namespace {
@@ -36,6 +38,9 @@ StandingWatch::StandingWatch(const ServoJoint& joint, std::size_t index, double 
     : joint_(&joint),
       index_(static_cast<std::uint32_t>(index)),
       period_s_(period_s),
+      stands_cycles_(cycles_of(kStandsS, period_s, kStandsCycles)),
+      stretch_cycles_(cycles_of(kStretchS, period_s)),
+      limit_cycles_(cycles_of(kLimitS, period_s)),
       digits_(kDeadStop * joint.bounds.stop_deceleration * period_s * period_s, period_s) {}
 
 void StandingWatch::rest(std::optional<double> position) noexcept {
@@ -45,10 +50,6 @@ void StandingWatch::rest(std::optional<double> position) noexcept {
   } else {
     digits_.lose();
   }
-}
-
-std::int64_t StandingWatch::cycles(double seconds) const noexcept {
-  return static_cast<std::int64_t>(std::ceil(seconds / period_s_ - 1e-9));
 }
 
 void StandingWatch::step(const ResponseSeen& seen, FaultSink& faults) noexcept {
@@ -157,13 +158,12 @@ void StandingWatch::watch_way(const ResponseSeen& seen, double went, FaultSink& 
   const double least_range = kLeastRange * joint_->max_following_error;
   const bool beside = std::abs(seen.position_set - seen.position) > least_range / 4;
   if (beside) {
-    const std::int64_t least_cycles = std::max<std::int64_t>(kStandsCycles, cycles(kStandsS));
     const double way = seen.out_of_bound ? std::min(kStandsWay, kOfBound * joint_->max_following_error) : kStandsWay;
-    const Stretch all = lately(way, least_cycles);
-    const bool long_enough = all.cycles >= least_cycles && all.way >= way;
+    const Stretch all = lately(way, stands_cycles_);
+    const bool long_enough = all.cycles >= stands_cycles_ && all.way >= way;
     if (long_enough && all.set.width() >= least_range && stands(all)) raise_standing(all, seen, faults);
   }
-  if (latest.way >= kStretchWay && latest.cycles >= cycles(kStretchS)) begin_stretch(seen);
+  if (latest.way >= kStretchWay && latest.cycles >= stretch_cycles_) begin_stretch(seen);
 }
 
 void StandingWatch::raise_standing(const Stretch& stretch, const ResponseSeen& seen, FaultSink& faults) const noexcept {
@@ -196,7 +196,7 @@ void StandingWatch::watch_limit(const ResponseSeen& seen, FaultSink& faults) noe
   at_limit_ = std::max<std::int64_t>(0, at_limit_ + (at_limit ? 1 : -2));
   if (at_limit_ == 0) return begin_limit(seen);
   pushed_.add(seen.position);
-  if (at_limit_ < cycles(kLimitS)) return;
+  if (at_limit_ < limit_cycles_) return;
   if (pushed_.width() > kLimitWay * acceleration * kLimitS * kLimitS / 2) {
     at_limit_ = 1;
     return begin_limit(seen);

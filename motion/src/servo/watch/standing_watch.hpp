@@ -53,13 +53,13 @@ class StandingWatch {
   [[nodiscard]] Stretch lately(double way, std::int64_t least_cycles) const noexcept;
   [[nodiscard]] static bool stands(const Stretch& stretch) noexcept;
   void raise_standing(const Stretch& stretch, const ResponseSeen& seen, FaultSink& faults) const noexcept;
-  [[nodiscard]] std::int64_t cycles(double seconds) const noexcept;
   /// What keeps it from going is nothing that it makes good.
   [[nodiscard]] bool slips() const noexcept { return joint_->method == ControlMethod::Velocity; }
 
   const ServoJoint* joint_;
   std::uint32_t index_;
   double period_s_;
+  std::int64_t stands_cycles_, stretch_cycles_, limit_cycles_;  ///< that it takes at least
   bool begun_ = false;
 
   EncoderDigits digits_;

@@ -89,10 +89,12 @@ class FeedforwardModel {
   }
 
  private:
+  static constexpr double kGone = 40;  ///< e^-40 is nothing beside 1, and takes long to work out
+
   /// Largest share of friction at a speed.
   [[nodiscard]] double bound(double speed) const noexcept {
     const double share = speed / parameters_.stribeck_speed;
-    return 1 + (parameters_.breakaway - 1) * std::exp(-share * share);
+    return 1 + (parameters_.breakaway - 1) * (share * share < kGone ? std::exp(-share * share) : 0);
   }
   /// Friction after so many presliding ways.
   [[nodiscard]] static double bent(double friction, double way, double bound) noexcept {
@@ -101,7 +103,8 @@ class FeedforwardModel {
     const double slides = std::clamp(((friction + way / 2) / end - kElastic) / (1 - kElastic), 0.0, 1.0);
     // f' = 1 - slides·|f|/g, with `slides` as half of the way has it, solved: a long way ends at g.
     const double gone = slides * std::abs(way) / bound;
-    const double share = gone > 1e-9 ? -std::expm1(-gone) / gone : 1.0;
+    const double past = gone < kGone ? -std::expm1(-gone) : 1.0;
+    const double share = gone > 1e-9 ? past / gone : 1.0;
     return std::clamp(friction + way * share * (1 - slides * friction / end), -bound, bound);
   }
   void slide(const ServoInput& input) noexcept { friction_ = std::tanh(led(input) / parameters_.friction_speed); }

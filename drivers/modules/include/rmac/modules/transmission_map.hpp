@@ -14,7 +14,7 @@ class TransmissionMap final : public ActuatorMap {
   explicit TransmissionMap(std::vector<std::unique_ptr<ActuatorMap>> transmissions) {
     for (std::unique_ptr<ActuatorMap>& transmission : transmissions) {
       const ActuatorMap& map = *transmission;
-      parts_.push_back({std::move(transmission), joints_, actuators_});
+      parts_.push_back({std::move(transmission), joints_, map.joint_count(), actuators_, map.actuator_count()});
       joints_ += map.joint_count();
       actuators_ += map.actuator_count();
     }
@@ -46,14 +46,14 @@ class TransmissionMap final : public ActuatorMap {
  private:
   struct Part {
     std::unique_ptr<ActuatorMap> map;
-    std::size_t first_joint, first_actuator;
+    std::size_t first_joint, joint_count, first_actuator, actuator_count;
     template <typename T>
     [[nodiscard]] std::span<T> joints(std::span<T> all) const noexcept {
-      return all.subspan(first_joint, map->joint_count());
+      return all.subspan(first_joint, joint_count);
     }
     template <typename T>
     [[nodiscard]] std::span<T> actuators(std::span<T> all) const noexcept {
-      return all.subspan(first_actuator, map->actuator_count());
+      return all.subspan(first_actuator, actuator_count);
     }
   };
   std::vector<Part> parts_;
