@@ -69,10 +69,11 @@ def on_buses(mechanism, change):
     device = json.loads(file.read_text())
     for actuator in device["Actuators"]:
         actuator["Bus"] = "vcan0"
+        actuator.pop("Cogging", None)
     for joint in device["Joints"] + device["HeldJoints"]:  # a bus answers one cycle later than the simulated drives do: softer gains
         joint["Gains"] = [400, 15000, 6.5]
-        joint["ServoControlLaw"].pop("Parameters", None)  # nothing hangs on these drives
-        for absent in ("ForceSensor", "ForceControl"):
+        joint["ServoControlLaw"]["Parameters"] = {"rest_band": 0.002}  # nothing hangs on these drives; they stick, and would hunt
+        for absent in ("ForceSensor", "ForceControl", "Resonances", "LowPass"):
             joint.pop(absent, None)
     change(device)
     file.write_text(json.dumps(device))
