@@ -95,14 +95,20 @@ class ResumingTest(unittest.TestCase):
 
 
 class RefusalTest(unittest.TestCase):
-    def refused(self, **members):
+    def refused(self, *then, cycles=1, **members):
+        """What it comes to where the machine is so when it is asked, and so in the asks `then`, so many cycles apart."""
         machine = MachineModel(random.Random(1), 100, beyond=lambda place: place[0] > 2.5)
         stream = Stream(LINES, machine.state(), 100)
         while not stream.asks_state:
             machine.send(stream.next_batch())
             stream.answered(machine.carry_out())
         self.assertFalse(stream.ended)
-        stream.confirm(machine.state() | members)
+        states = iter((members, *then))
+        cycle = machine.state()["cycle"]
+        while stream.asks_state:
+            members = next(states, members)
+            cycle += cycles
+            stream.confirm(machine.state() | {"cycle": cycle} | members)
         self.assertTrue(stream.ended)
         return stream.failure
 
@@ -110,11 +116,13 @@ class RefusalTest(unittest.TestCase):
         failure = self.refused()
         self.assertIsInstance(failure, MoveRefused)
         self.assertEqual(failure.index, 2)
+        self.assertIsInstance(self.refused(cycles=0), MoveRefused, "of a machine that has no cycles")
 
     def test_a_refusal_that_came_of_a_stop_is_told_as_the_stop(self):
         self.assertIsInstance(self.refused(state="Stopping"), MachineStopped)
         stop = {"cycle": 5000, "message": "StopNow of panel"}
         self.assertIn("StopNow of panel", str(self.refused(state="Idle", last_stop=stop)))
+        self.assertIsInstance(self.refused({}, {"state": "Stopping"}), MachineStopped, "it stops a cycle or two later")
         old = {"cycle": 1, "message": "long ago"}
         self.assertIsInstance(self.refused(state="Idle", last_stop=old), MoveRefused)
 

@@ -23,6 +23,8 @@ _BATCH = 64
 _BATCH_BYTES = 1 << 18
 _FRAME_BYTES = 200  # of a request beside its parameters
 _WINDOW = 1024  # moves that wait for their answers
+_STOP_SHOWS_CYCLES = 5  # behind the refusal of what it overtook
+_STOP_SHOWS_ASKS = 25  # at most: of a machine without cycles
 
 
 class Stream:
@@ -45,6 +47,7 @@ class Stream:
         self._ends = OpenEnds()
         self._full = False
         self._refusal: MoveRefused | None = None  # that is to be told, unless it came of a stop
+        self._asked: list[int] = []  # cycles of the states that were asked for because of it
 
     def begin(self, state: dict[str, Any], first_id: int) -> None:
         """Before anything of it is sent: the machine from which it begins, and its ids."""
@@ -119,7 +122,7 @@ class Stream:
                 self.ledger.complete_all()
         elif state["state"] == "Stopping":
             self.failure = MachineStopped(state, self.ledger.done, str(self._refusal))
-        else:
+        elif self._stop_would_show(state["cycle"]):
             self.failure = self._refusal
 
     def give_up(self, error: RmacError) -> None:
@@ -164,6 +167,11 @@ class Stream:
         if self.failure is None and self._stopped(state):
             told = state["last_stop"] or state["last_error"] or {}
             self.failure = MachineStopped(state, self.ledger.done, told.get("message", "it does not tell why"))
+
+    def _stop_would_show(self, cycle: int) -> bool:
+        """What a stop overtook is refused at once; the machine stops in one of its next cycles."""
+        self._asked.append(cycle)
+        return cycle - self._asked[0] >= _STOP_SHOWS_CYCLES or len(self._asked) >= _STOP_SHOWS_ASKS
 
     def _stopped(self, state: dict[str, Any]) -> bool:
         """A cycle that waits for moves runs: one that rests otherwise was stopped."""
