@@ -94,6 +94,11 @@ Json joints_json(const std::vector<sdk::Joint>& joints) {
     add_if(entry, "MaxJump", joint.max_jump);
     add_mechanics(entry, joint.mechanics);
     add_force(entry, joint);
+    if (joint.gantry) {
+      entry["Gantry"] = {{"MaxSkew", joint.gantry->max_skew}};
+      add_if(entry["Gantry"], "Stiffness", joint.gantry->stiffness);
+      add_if(entry["Gantry"], "Damping", joint.gantry->damping);
+    }
     list.push_back(std::move(entry));
   }
   return list;

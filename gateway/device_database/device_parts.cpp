@@ -105,6 +105,12 @@ std::optional<ForceControl> force_control(const Json& joint) {
   return result;
 }
 
+std::optional<Gantry> gantry(const Json& entry) {
+  const auto gantry = entry.find("Gantry");
+  if (gantry == entry.end()) return std::nullopt;
+  return Gantry{number(*gantry, "MaxSkew"), number(*gantry, "Stiffness"), number(*gantry, "Damping")};
+}
+
 /// device.json's schema of one of its definitions, or of a list of them.
 std::string schema_of(const char* definition, bool list) {
   const Json definitions = Json::parse(device_schema_text()).at("definitions");
@@ -155,6 +161,7 @@ std::vector<sdk::Joint> joints(const Json& list) {
     joint.max_jump = number(entry, "MaxJump");
     joint.force_sensor = force_sensor(entry);
     joint.force = force_control(entry);
+    joint.gantry = gantry(entry);
     result.push_back(std::move(joint));
   }
   return result;

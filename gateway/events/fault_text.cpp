@@ -196,6 +196,13 @@ std::string joint_cause(const ServoFault& fault, const std::string& at) {
           "froze, or its shaft is held fast; check the encoder, its cable, its coupling and the brake, and look where "
           "the axis really is, then reset and find the reference again",
           at, fault.value, fault.bound);
+    case ServoFault::Kind::Skewed:
+      return fmt::format(
+          "{}: the motors of its joint stand {:.4g} apart, beyond the bound of {:.4g} (MaxSkew, or without it "
+          "MaxFollowingError), and it lags or is farthest from its place; look for what blocks this side, and at its "
+          "encoder, coupling and brake; where the frame is soft, give the joint a Gantry with Stiffness and Damping, "
+          "then reset",
+          at, fault.value, fault.bound);
     case ServoFault::Kind::EncoderJump:
       return fmt::format(
           "{}: its position jumped by {:.4g} within a cycle, and motion explains {:.4g}; check the encoder, its cable "
@@ -283,6 +290,7 @@ std::string cause(const ServoFault& fault, const Mechanism* mechanism) {
     case Kind::WrongDirection:
     case Kind::StandsStill:
     case Kind::EncoderFrozen:
+    case Kind::Skewed:
     case Kind::EncoderJump:
     case Kind::Displaced:
     case Kind::ForceLimit:
@@ -356,6 +364,7 @@ MinorCode code_of(ServoFault::Kind kind) noexcept {
     case Kind::Oscillation:
     case Kind::WrongDirection:
     case Kind::StandsStill:
+    case Kind::Skewed:
     case Kind::ForceLimit:
     case Kind::ContactLost:
     case Kind::CyclesLost:

@@ -39,7 +39,7 @@ ForceControl force(const sdk::Joint& joint) {
 Expected<ServoJoint> make_joint(const sdk::Joint& joint, LoopDraft& draft) {
   ServoJoint made{nullptr,          joint.method,    joint.max_following_error,
                   joint.max_effort, joint.mechanics, bounds(joint, draft.parts.period_s),
-                  std::nullopt,     force(joint)};
+                  std::nullopt,     force(joint),    joint.gantry};
   if (joint.servo_law.name.empty()) return made;
   auto law = load_joint_law(joint, draft.loader, draft.modules);
   if (!law) return tl::unexpected(law.error());

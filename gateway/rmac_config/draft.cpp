@@ -15,6 +15,7 @@ sdk::Joint without_what_is_set(const sdk::Joint& joint) {
   left.max_jump = joint.max_jump;
   left.force_sensor = joint.force_sensor;
   left.force = joint.force;
+  left.gantry = joint.gantry;
   return left;
 }
 

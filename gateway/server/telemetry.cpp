@@ -81,6 +81,7 @@ void append_drives(const CycleSample& sample, std::string& out) {
     fmt::format_to(std::back_inserter(out), "{}\"{}\"", i == 0 ? "" : ",", drive_state_text(sample.statusword[i]));
   }
   out += ']';
+  append_list("ahead", sample.ahead, 0, sample.actuator_count, out);
   append_list("position", sample.position, 0, sample.joint_count_with_held, out);
   fmt::format_to(std::back_inserter(out), ",\"inputs\":{},\"outputs\":{},\"deadline_misses\":{},\"samples_lost\":{}}}",
                  sample.inputs, sample.outputs, sample.deadline_misses, sample.samples_lost);

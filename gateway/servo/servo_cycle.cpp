@@ -177,6 +177,7 @@ void ServoCycle::publish(const ServoWishes& wishes) noexcept {
     sample_.statusword = report_.statusword;
     sample_.error_code = report_.error_code;
     sample_.torque_permille = report_.torque_permille;
+    sample_.ahead = report_.ahead;
     sample_.counts = report_.counts;
     std::copy(report_.spindle_rpm.begin(), report_.spindle_rpm.end(), sample_.spindle_rpm.begin());
     std::copy(report_.spindle_torque_nm.begin(), report_.spindle_torque_nm.end(), sample_.spindle_torque_nm.begin());

@@ -44,6 +44,7 @@ struct CycleSample {
   std::array<std::uint16_t, kMaxJoints> statusword{};        ///< one an actuator, as all that drives tell
   std::array<std::uint16_t, kMaxJoints> error_code{};        ///< CiA 402's 603Fh
   std::array<std::int16_t, kMaxJoints> torque_permille{};    ///< measured, of the rated torque
+  std::array<double, kMaxJoints> ahead{};                    ///< how far the motor is ahead of its joint, mm or degrees
   std::array<std::int32_t, kMaxJoints> counts{};             ///< 6064h: where the motor is
   std::array<double, 4> spindle_rpm{}, spindle_torque_nm{};  ///< measured
   std::uint64_t inputs = 0, outputs = 0;

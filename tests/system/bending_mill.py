@@ -74,7 +74,8 @@ def on_two_motors(appliance, axis=4):
         joint.update({"Gains": [2 * gain for gain in joint["Gains"]], "MaxEffort": 2 * joint["MaxEffort"]})
         parameters = device["DigitalControlInterface"]["Parameters"]
         for name in ("stiffness_nm_rad", "load_inertia_kg_m2", "inertia_kg_m2"):
-            parameters[name][axis] = parameters[name][0]
+            if name in parameters:
+                parameters[name][axis] = parameters[name][0]
 
 
 class TuningTest(unittest.TestCase):

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "servo/drives/cogging_map.hpp"
+#include "servo/gantry/gantries.hpp"
 #include "servo/joints/position_correction.hpp"
 #include "servo/joints/wiring.hpp"
 #include "servo/setpoint/force_loop.hpp"
@@ -256,7 +257,9 @@ Expected<> check_servo_loop_parts(const ServoLoopParts& parts) {
       .and_then([&] { return check_inputs(parts); })
       .and_then([&]() -> Expected<> {
         const Wiring wiring(*parts.actuator_map, parts.joints.size(), parts.actuators);
-        return check_modes(parts, wiring).and_then([&] { return check_homing(parts, wiring); });
+        return check_modes(parts, wiring).and_then([&] { return check_homing(parts, wiring); }).and_then([&] {
+          return check_gantries(parts, wiring);
+        });
       });
 }
 

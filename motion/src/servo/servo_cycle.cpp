@@ -16,10 +16,10 @@ ServoLoop::Impl::Impl(ServoLoopParts loop_parts)
       positions(parts, wiring),
       transmission(*parts.actuator_map, parts.joints),
       joints(parts, wiring, transmission),
+      gantries(parts, wiring),
       homing(parts.actuators, parts.homing_timeout_s, parts.period_s),
       setpoints(parts, wiring.joint_delays(), wiring.follow_themselves()),
       motion_watch(parts),
-      deadlines(parts.max_cycles_lost, parts.period_s),
       laws(parts.joints, parts.period_s),
       spindles(parts.spindles, parts.period_s, state),
       rest(parts.actuators.size() + parts.spindles.size(), parts.period_s),
@@ -104,6 +104,7 @@ void ServoLoop::Impl::read(std::uint64_t missed) noexcept {
   positions.step(shafts, joints.velocity(), missed);
   if (positions.late()) joints.forget_steps();
   joints.read(shafts.rad(), shafts.rad_s(), live.all(), live.all() & positions.answered(), setpoints.velocity());
+  gantries.read(shafts.rad());
   spindles.read();
 }
 
@@ -123,7 +124,7 @@ void ServoLoop::Impl::watch_drives(const ServoCommand& command) noexcept {
       watch_drive(spindles.told(i), needed, ServoFault::Part::Spindle, i, state);
     }
   }
-  deadlines.step(command.cycles_missed, state.driving(), state);
+  motion_watch.deadlines().step(command.cycles_missed, state.driving(), state);
   settle();
 }
 
@@ -148,6 +149,7 @@ void ServoLoop::Impl::run_homing(const ServoCommand& command) noexcept {
   if (state.state() != ServoState::Homing) return;
   const std::uint32_t completed = homing.completed();
   positions.forget(homing.drives());
+  gantries.forget(homing.drives());
   const Homing::Progress progress = homing.step(command.home, shafts, state);
   if (progress == Homing::Progress::Over) state.homing_is_over();
   if (homing.completed() != completed) positions.homed();
@@ -178,10 +180,13 @@ void ServoLoop::Impl::go_live() noexcept {
     if (!live[j] && operable(j)) {
       live.take(j);
       positions.engaged(j);
+      if (has(positions.lost(), j)) gantries.forget(wiring.actuators_of(j));
+      gantries.engage(j);
       setpoints.hold_at(j, joints.position()[j]);
       if (wiring.follows_itself(j)) engaged |= only(j);
       engage_law(j, laws.resting_effort(j));
     } else if (live.handed(j)) {
+      gantries.go_on(j);
       engage_law(j, laws.effort()[j]);
     }
   }
@@ -247,6 +252,8 @@ void ServoLoop::Impl::watch_motion(const ServoCommand& command) noexcept {
     if (state.powered() && live[j]) {
       motion_watch.joint(j).step(seen(j), state);
       positions.doubt_place(j, motion_watch.joint(j).doubts_position());
+      gantries.watch(
+          j, {setpoints.position()[j], setpoints.velocity()[j], laws.effort()[j], has(positions.answered(), j)}, state);
     } else {
       motion_watch.joint(j).rest(has(positions.answered(), j) ? std::optional(joints.position()[j]) : std::nullopt);
     }
@@ -294,6 +301,7 @@ void ServoLoop::Impl::run_laws() noexcept {
       const std::optional<double> beside =
           setpoints.pushes(j) ? std::optional(setpoints.force_loop(j).effort()) : std::nullopt;
       if (!laws.run(j, input(j), beside, state)) return;
+      gantries.hold(j);
     } else if (state.braking()) {
       laws.let_go(j);
     } else {
@@ -333,6 +341,7 @@ IndexSet ServoLoop::Impl::controlled() const noexcept {
 void ServoLoop::Impl::make_setpoints_of_drives() noexcept {
   torques.let_go();
   if (state.powered()) torques.make(joints.positions(), {laws.effort().data(), wiring.joints()}, state);
+  if (state.powered()) torques.add(gantries.torques_nm(), controlled());
   if (!wiring.all_take_torque() || torques.know_cogging()) {
     std::array<double, kMaxJoints> wanted{};
     transmission.shafts_for(setpoints.positions(), {wanted.data(), wiring.actuators()});

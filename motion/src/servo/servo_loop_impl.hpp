@@ -12,6 +12,7 @@
 #include "servo/drives/shaft_aims.hpp"
 #include "servo/drives/shaft_torques.hpp"
 #include "servo/drives/shafts.hpp"
+#include "servo/gantry/gantries.hpp"
 #include "servo/homing/homing.hpp"
 #include "servo/joints/joint_reader.hpp"
 #include "servo/joints/live_joints.hpp"
@@ -23,7 +24,6 @@
 #include "servo/spindles/spindles.hpp"
 #include "servo/state/loop_state.hpp"
 #include "servo/stop/rest_watch.hpp"
-#include "servo/watch/deadline_watch.hpp"
 #include "servo/watch/input_watch.hpp"
 #include "servo/watch/motion_watch.hpp"
 #include "servo/watch/position_watch.hpp"
@@ -80,11 +80,11 @@ struct ServoLoop::Impl {
   PositionWatch positions;
   Transmission transmission;
   JointReader joints;
+  Gantries gantries;
   LiveJoints live;
   Homing homing;
   Setpoints setpoints;
   MotionWatch motion_watch;
-  DeadlineWatch deadlines;
   JointLaws laws;
   Spindles spindles;
   RestWatch rest;

@@ -61,6 +61,7 @@ void ServoLoop::Impl::fill(const ServoCommand& command, ServoReport& report) con
       report.torque_permille[i] = words.torque_permille;
       report.counts[i] = words.position_counts;
     }
+    report.ahead = gantries.ahead();
     report.truth.reset();
     if (const auto loads = shafts.loads_rad()) {
       report.truth = joints.at_loads({loads->data(), wiring.actuators()});

@@ -24,6 +24,12 @@ void ShaftTorques::make(std::span<const double> joints, std::span<const double> 
   }
 }
 
+void ShaftTorques::add(std::span<const double> more_nm, IndexSet followed) noexcept {
+  for (std::size_t i = 0; i < actuators_.size(); ++i) {
+    if (has(followed, i)) torque_[i] += more_nm[i];
+  }
+}
+
 void ShaftTorques::cancel_cogging(std::span<const double> measured, std::span<const double> wanted,
                                   IndexSet followed) noexcept {
   for (std::size_t i = 0; i < actuators_.size(); ++i) {

@@ -23,6 +23,8 @@ class ShaftTorques {
   /// fault, and none has a torque.
   void make(std::span<const double> joints, std::span<const double> efforts, FaultSink& faults) noexcept;
   void let_go() noexcept { torque_.fill(0); }
+  /// What holds motors together, of those in `followed`. Behind `make`.
+  void add(std::span<const double> more_nm, IndexSet followed) noexcept;
   /// As another loop left it.
   void take_over(std::size_t actuator, double torque_nm) noexcept { torque_[actuator] = torque_nm; }
 

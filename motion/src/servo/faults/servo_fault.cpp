@@ -38,6 +38,8 @@ const char* to_string(ServoFault::Kind kind) noexcept {
       return "StandsStill";
     case ServoFault::Kind::EncoderFrozen:
       return "EncoderFrozen";
+    case ServoFault::Kind::Skewed:
+      return "Skewed";
     case ServoFault::Kind::EncoderJump:
       return "EncoderJump";
     case ServoFault::Kind::Displaced:

@@ -7,6 +7,12 @@
 
 namespace rmac {
 
+/// What no brake and no wall takes from a joint within a cycle: mm or degrees in a cycle.
+[[nodiscard]] inline double dead_stop(double max_acceleration, double period_s) noexcept {
+  constexpr double kTimes = 10;
+  return kTimes * max_acceleration * period_s * period_s;
+}
+
 /// The last digit of a joint's encoder, which is never quite still where it resolves well. Where it went to and fro
 /// until now, or the joint went at a speed that nothing takes away within a cycle, and it tells the same from then on,
 /// it froze, or its shaft is held fast. Real-time safe.

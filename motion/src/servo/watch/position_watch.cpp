@@ -263,10 +263,10 @@ void PositionWatch::engaged(std::size_t joint) noexcept {
 
 void PositionWatch::forgive(const ServoFault& fault) noexcept {
   IndexSet without = displaced_joints_ | std::exchange(suspected_, 0);
-  if (fault.part == ServoFault::Part::Joint &&
-      (fault.kind == ServoFault::Kind::EncoderJump || fault.kind == ServoFault::Kind::EncoderFrozen ||
-       fault.kind == ServoFault::Kind::Displaced)) {
-    without |= only(fault.index);
+  if (fault.kind == ServoFault::Kind::EncoderJump || fault.kind == ServoFault::Kind::EncoderFrozen ||
+      fault.kind == ServoFault::Kind::Displaced) {
+    if (fault.part == ServoFault::Part::Joint) without |= only(fault.index);
+    if (fault.part == ServoFault::Part::Actuator) without |= wiring_.joints_of(only(fault.index));
   }
   for (std::size_t j = 0; j < wiring_.joints(); ++j) {
     if (!has(without, j)) continue;

@@ -22,7 +22,6 @@ constexpr double kHoldsIt = 0.15;      // of MaxEffort, that friction takes wher
 constexpr double kToAndFro = 1.5;      // of the way that is left of it
 constexpr double kLeastRange = 0.1;    // of MaxFollowingError: a path that trembles by less is none to follow
 
-constexpr double kDeadStop = 10;        // of MaxAcceleration within a cycle: no brake and no wall does that
 constexpr int kRestsCycles = 5;         // of the setpoint
 constexpr double kFrozenEffort = 0.03;  // of MaxEffort, by which it changes meanwhile
 constexpr double kStillS = 0.1;         // of an encoder whose last digit may rest, as a coarse one's
@@ -38,10 +37,9 @@ StandingWatch::StandingWatch(const ServoJoint& joint, std::size_t index, double 
     : joint_(&joint),
       index_(static_cast<std::uint32_t>(index)),
       period_s_(period_s),
-      stands_cycles_(cycles_of(kStandsS, period_s, kStandsCycles)),
-      stretch_cycles_(cycles_of(kStretchS, period_s)),
-      limit_cycles_(cycles_of(kLimitS, period_s)),
-      digits_(kDeadStop * joint.bounds.stop_deceleration * period_s * period_s, period_s) {}
+      least_cycles_{cycles_of(kStandsS, period_s, kStandsCycles), cycles_of(kStretchS, period_s),
+                    cycles_of(kLimitS, period_s)},
+      digits_(dead_stop(joint.bounds.stop_deceleration, period_s), period_s) {}
 
 void StandingWatch::rest(std::optional<double> position) noexcept {
   begun_ = false;
@@ -56,7 +54,7 @@ void StandingWatch::step(const ResponseSeen& seen, FaultSink& faults) noexcept {
   if (!begun_) {
     begun_ = true;
     digits_.begin(seen.position, seen.effort);
-    at_limit_ = 0;
+    at_limit_.cycles = 0;
     begin_limit(seen);
     set_before_ = seen.position_set;
     efforts_ = 0;
@@ -159,11 +157,11 @@ void StandingWatch::watch_way(const ResponseSeen& seen, double went, FaultSink& 
   const bool beside = std::abs(seen.position_set - seen.position) > least_range / 4;
   if (beside) {
     const double way = seen.out_of_bound ? std::min(kStandsWay, kOfBound * joint_->max_following_error) : kStandsWay;
-    const Stretch all = lately(way, stands_cycles_);
-    const bool long_enough = all.cycles >= stands_cycles_ && all.way >= way;
+    const Stretch all = lately(way, least_cycles_.stands);
+    const bool long_enough = all.cycles >= least_cycles_.stands && all.way >= way;
     if (long_enough && all.set.width() >= least_range && stands(all)) raise_standing(all, seen, faults);
   }
-  if (latest.way >= kStretchWay && latest.cycles >= stretch_cycles_) begin_stretch(seen);
+  if (latest.way >= kStretchWay && latest.cycles >= least_cycles_.stretch) begin_stretch(seen);
 }
 
 void StandingWatch::raise_standing(const Stretch& stretch, const ResponseSeen& seen, FaultSink& faults) const noexcept {
@@ -184,8 +182,8 @@ void StandingWatch::raise_frozen(FaultSink& faults) const noexcept {
 }
 
 void StandingWatch::begin_limit(const ResponseSeen& seen) noexcept {
-  set_at_limit_ = seen.position_set;
-  pushed_.begin(seen.position);
+  at_limit_.set = seen.position_set;
+  at_limit_.position.begin(seen.position);
 }
 
 void StandingWatch::watch_limit(const ResponseSeen& seen, FaultSink& faults) noexcept {
@@ -193,16 +191,16 @@ void StandingWatch::watch_limit(const ResponseSeen& seen, FaultSink& faults) noe
   const bool at_limit = joint_->max_effort > 0 && std::abs(seen.effort) >= kLimit * joint_->max_effort;
   if (!(acceleration > 0) || slips()) return;
   // What trembles at its limit is not at it in each cycle.
-  at_limit_ = std::max<std::int64_t>(0, at_limit_ + (at_limit ? 1 : -2));
-  if (at_limit_ == 0) return begin_limit(seen);
-  pushed_.add(seen.position);
-  if (at_limit_ < limit_cycles_) return;
-  if (pushed_.width() > kLimitWay * acceleration * kLimitS * kLimitS / 2) {
-    at_limit_ = 1;
+  at_limit_.cycles = std::max<std::int64_t>(0, at_limit_.cycles + (at_limit ? 1 : -2));
+  if (at_limit_.cycles == 0) return begin_limit(seen);
+  at_limit_.position.add(seen.position);
+  if (at_limit_.cycles < least_cycles_.limit) return;
+  if (at_limit_.position.width() > kLimitWay * acceleration * kLimitS * kLimitS / 2) {
+    at_limit_.cycles = 1;
     return begin_limit(seen);
   }
-  faults.raise({ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, seen.position_set - set_at_limit_,
-                static_cast<double>(at_limit_) * period_s_});
+  faults.raise({ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, seen.position_set - at_limit_.set,
+                static_cast<double>(at_limit_.cycles) * period_s_});
 }
 
 }  // namespace rmac

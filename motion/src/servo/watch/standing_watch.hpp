@@ -59,7 +59,9 @@ class StandingWatch {
   const ServoJoint* joint_;
   std::uint32_t index_;
   double period_s_;
-  std::int64_t stands_cycles_, stretch_cycles_, limit_cycles_;  ///< that it takes at least
+  struct {
+    std::int64_t stands, stretch, limit;
+  } least_cycles_;  ///< that it takes
   bool begun_ = false;
 
   EncoderDigits digits_;
@@ -77,9 +79,11 @@ class StandingWatch {
   double free_speed_ = 0, free_at_ = 0;  ///< that its effort gives it at least where nothing holds it
 
   // All its effort, and what comes of it.
-  std::int64_t at_limit_ = 0;  ///< cycles
-  double set_at_limit_ = 0;    ///< where it was to be when they began
-  Range pushed_{};             ///< positions of them
+  struct {
+    std::int64_t cycles = 0;
+    double set = 0;    ///< where it was to be when they began
+    Range position{};  ///< of them
+  } at_limit_;
 };
 
 }  // namespace rmac

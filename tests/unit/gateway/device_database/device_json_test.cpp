@@ -88,6 +88,7 @@ TEST(DeviceJson, LosesNothingOfWhatFewMachinesHave) {
   joint["LimitType"] = "InfinitePositive";
   joint.erase("Max");
   joint["MaxJump"] = 0.25;
+  joint["Gantry"] = {{"MaxSkew", 0.2}, {"Stiffness", 1500}, {"Damping", 12}};
   joint["MaxMeasuredSpeed"] = 900;
   joint["Backlash"] = 0.01;
   joint["LowPass"] = 120;

@@ -11,7 +11,8 @@ sdk::DeviceObject described() {
   sdk::DeviceObject device;
   device.name = "Mill";
   for (const char* name : {"X", "Y"}) {
-    device.joints.push_back({.limits = {.name = name}, .max_measured_speed = 250, .max_jump = 0.5});
+    device.joints.push_back(
+        {.limits = {.name = name}, .max_measured_speed = 250, .max_jump = 0.5, .gantry = Gantry{.max_skew = 0.2}});
   }
   device.held_joints = {{.limits = {.name = "Z"}, .max_jump = 0.7}};
   device.spindles.resize(1);
@@ -43,6 +44,8 @@ TEST(Draft, KeepsOfJointsWhatNoSetterSets) {
   ASSERT_EQ(draft.described.size(), 2U);
   EXPECT_EQ(draft.described[1].max_measured_speed, 250);
   EXPECT_EQ(draft.described[1].max_jump, 0.5);
+  ASSERT_TRUE(draft.described[1].gantry);
+  EXPECT_EQ(draft.described[1].gantry->max_skew, 0.2);
   EXPECT_EQ(draft.described[1].limits.name, "");
   EXPECT_EQ(draft.device.held_joints.at(0).max_jump, 0.7);
 }

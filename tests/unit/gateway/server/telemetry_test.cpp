@@ -22,9 +22,11 @@ TEST(DrivesTopic, TellsOfBothMotorsOfAGantry) {
   sample.actuator_count = 2;
   sample.statusword = {0x27, 0x08};
   sample.position = {12.5, 99};
+  sample.ahead = {0.25, -0.25, 99};
   const json told = drives_of(sample);
   EXPECT_EQ(told["statusword"], json::parse("[39,8]"));
   EXPECT_EQ(told["state"], json::parse(R"(["operation enabled","fault"])"));
+  EXPECT_EQ(told["ahead"], json::parse("[0.25,-0.25]"));
   EXPECT_EQ(told["position"], json::parse("[12.5]")) << "they move one joint";
 }
 

@@ -27,7 +27,7 @@ class Proportional final : public SingleTransmission {
 };
 
 /// A gantry: two screws side by side move one joint, and each takes half the load. The joint stands where their mean
-/// stands; that both keep in step is the stiffness of the bridge.
+/// stands; the bridge, and the joint's `Gantry`, keep them in step.
 class GantryPair final : public ActuatorMap {
  public:
   GantryPair(double lead_mm, double gear) noexcept : rad_per_mm_(2 * std::numbers::pi * gear / lead_mm) {}

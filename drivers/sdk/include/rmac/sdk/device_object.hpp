@@ -8,6 +8,7 @@
 
 #include "rmac/motion/drive_scale.hpp"
 #include "rmac/motion/force_control.hpp"
+#include "rmac/motion/servo/gantry.hpp"
 #include "rmac/motion/joint.hpp"
 #include "rmac/motion/joint_mechanics.hpp"
 #include "rmac/motion/limits.hpp"
@@ -38,6 +39,7 @@ struct Joint {
   double max_jump = 0;            ///< mm or deg of encoder jump; 0: what three cycles at `max_speed` go
   std::optional<ForceSensor> force_sensor{};
   std::optional<ForceControl> force{};
+  std::optional<Gantry> gantry{};  ///< none: of motors side by side a skew of `max_following_error` is allowed
 };
 
 /// One actuator: which axis of which bus, and its scale.

@@ -7,7 +7,7 @@
 namespace rmac::sdk {
 
 /// Raised whenever a port or this header changes incompatibly; a module of another version is refused.
-inline constexpr std::uint32_t kModuleAbi = 23;
+inline constexpr std::uint32_t kModuleAbi = 24;
 
 enum class ModuleKind : std::uint32_t {
   Kinematics,

@@ -34,6 +34,8 @@ struct ServoFault {
                      ///< bound: for how many seconds it stands
     EncoderFrozen,   ///< a joint's encoder tells the same to the last digit; value: for how many seconds, bound: by how
                      ///< much the effort changed meanwhile (N, N·m)
+    Skewed,          ///< motors of one joint went apart, this one farthest from where it is to be; value: by how far
+                     ///< (mm or deg of the joint), bound: what is allowed
     EncoderJump,     ///< value: the jump, bound: what motion can explain within a cycle (mm or deg)
     Displaced,    ///< a joint is not where it was left, or not where it would be sent; value: how far it is from there,
                   ///< bound: what is allowed (mm or deg)

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "rmac/motion/machine_size.hpp"
 
@@ -19,10 +20,13 @@ struct ServoHandover {
     double setpoint_counts = 0;  ///< wanted position in encoder counts, before rounding
     double torque_nm = 0;        ///< commanded, in the drive's sense
     double backlash_side = 0;    ///< flank that carries, -1 to 1 in the drive's sense; 0 where several joints share it
-    bool live = false;           ///< was under control
-    bool seen = false;           ///< `counts` holds a reading
-    bool believed = false;       ///< it was confirmed
-    bool referenced = false;     ///< the drive found home, or needs none
+    /// Angle by which its shaft is ahead of its joint where it and those beside it stand as they belong; in the drive's
+    /// sense.
+    std::optional<double> belongs_rad{};
+    bool live = false;        ///< was under control
+    bool seen = false;        ///< `counts` holds a reading
+    bool believed = false;    ///< it was confirmed
+    bool referenced = false;  ///< the drive found home, or needs none
     bool reference_lost = false;
   };
   std::array<Drive, kMaxJoints> drives{};

@@ -15,6 +15,7 @@
 #include "rmac/motion/ports/kinematics.hpp"
 #include "rmac/motion/ports/servo_law.hpp"
 #include "rmac/motion/servo/cogging.hpp"
+#include "rmac/motion/servo/gantry.hpp"
 #include "rmac/motion/servo/servo_bus.hpp"
 #include "rmac/motion/servo/servo_fault.hpp"
 #include "rmac/motion/servo/servo_inputs.hpp"
@@ -51,7 +52,8 @@ struct ServoJoint {
   JointMechanics mechanics{};      ///< made good between the law and the drive
   JointBounds bounds{};
   std::optional<ServoForceSensor> force_sensor{};
-  ForceControl force{};  ///< used under `ControlMethod::Force`
+  ForceControl force{};            ///< used under `ControlMethod::Force`
+  std::optional<Gantry> gantry{};  ///< none: of motors side by side a skew of `max_following_error` is allowed
 };
 
 /// A motor that moves joints: its drive in torque mode, behind the law of its joint, or following the joint's setpoint

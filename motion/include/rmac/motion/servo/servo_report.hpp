@@ -31,7 +31,8 @@ struct ServoReport {
   std::array<std::uint16_t, kMaxJoints> statusword{};
   std::array<std::uint16_t, kMaxJoints> error_code{};
   std::array<std::int16_t, kMaxJoints> torque_permille{};  ///< measured by the drives
-  std::array<std::int32_t, kMaxJoints> counts{};           ///< where the motors are, as the drives tell
+  std::array<double, kMaxJoints> ahead{};  ///< of its joint, where several motors move it side by side: mm or degrees
+  std::array<std::int32_t, kMaxJoints> counts{};  ///< where the motors are, as the drives tell
   std::array<double, kMaxSpindles> spindle_rpm{};
   std::array<double, kMaxSpindles> spindle_torque_nm{};  ///< measured; 0 where the drive does not tell
   std::array<std::uint16_t, kMaxSpindles> spindle_statusword{};

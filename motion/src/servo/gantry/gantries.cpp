@@ -1,0 +1,225 @@
+#include "servo/gantry/gantries.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+
+namespace rmac {
+
+namespace {
+
+constexpr double kStep = 1e-3;    // mm or degrees, by which a joint is moved to see what its motors do
+constexpr double kRateS = 0.001;  // low-pass of the rate
+constexpr double kBringsBackS = 0.2;
+constexpr double kGoesOn = 0.05;  // of MaxSkew, that a joint goes while an encoder stays
+constexpr double kGoesOnDigits = 5;
+constexpr double kStaysS = 0.005;     // to the last digit
+constexpr double kBreaksLoose = 0.2;  // of its share of MaxEffort, by which its own changes: twice the friction
+constexpr double kMoreThanUsual = 2;
+constexpr double kMargin = 0.2;  // of MaxSkew, beyond a skew that there was before power
+
+/// The joint has several motors, and they move no other one.
+bool side_by_side(const Wiring& wiring, std::size_t joint) {
+  const IndexSet motors = wiring.actuators_of(joint);
+  if (std::popcount(motors) < 2) return false;
+  for (std::size_t i = 0; i < wiring.actuators(); ++i) {
+    if (has(motors, i) && wiring.sense(i) == 0) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Gantries::Gantries(const ServoLoopParts& parts, const Wiring& wiring) : parts_(parts), period_s_(parts.period_s) {
+  if (parts.virtual_mode) return;
+  for (std::size_t j = 0; j < wiring.joints(); ++j) {
+    if (!side_by_side(wiring, j)) continue;
+    const ServoJoint& joint = parts.joints[j];
+    std::array<double, kMaxJoints> at{}, effort{}, from{}, to{}, torque{};
+    const auto joints_of = [&](std::array<double, kMaxJoints>& all) { return std::span(all).first(wiring.joints()); };
+    const auto motors_of = [&](std::array<double, kMaxJoints>& all) {
+      return std::span(all).first(wiring.actuators());
+    };
+    effort[j] = 1;
+    parts.actuator_map->actuator_efforts(joints_of(at), joints_of(effort), motors_of(torque));
+    parts.actuator_map->actuator_positions(joints_of(at), motors_of(from));
+    at[j] = kStep;
+    parts.actuator_map->actuator_positions(joints_of(at), motors_of(to));
+    Joint made{j, joint.gantry.value_or(Gantry{.max_skew = joint.max_following_error}), 0, {}};
+    for (std::size_t i = 0; i < wiring.actuators(); ++i) {
+      if (!has(wiring.actuators_of(j), i)) continue;
+      const double per_rad = kStep / (to[i] - from[i]);
+      const EncoderDigits digits(dead_stop(joint.bounds.stop_deceleration, period_s_), period_s_);
+      made.motors.push_back({i, per_rad, EffortFilter(joint.mechanics, period_s_), digits});
+      made.power_a_speed += torque[i] / per_rad;
+    }
+    joints_.push_back(std::move(made));
+  }
+}
+
+Gantries::Joint* Gantries::of(std::size_t joint) noexcept {
+  const auto found = std::ranges::find(joints_, joint, &Joint::joint);
+  return found == joints_.end() ? nullptr : &*found;
+}
+
+const Gantries::Motor* Gantries::motor(std::size_t actuator) const noexcept {
+  for (const Joint& joint : joints_) {
+    const auto found = std::ranges::find(joint.motors, actuator, &Motor::actuator);
+    if (found != joint.motors.end()) return &*found;
+  }
+  return nullptr;
+}
+
+void Gantries::read(std::span<const double> shafts) noexcept {
+  if (joints_.empty()) return;
+  const ActuatorMap& map = *parts_.actuator_map;
+  const std::size_t joints = parts_.joints.size();
+  std::array<double, kMaxJoints> moved{}, from{}, to{};
+  map.joint_positions(shafts, {at_.data(), joints});
+  moved = at_;
+  for (const Joint& joint : joints_) moved[joint.joint] += kStep;
+  map.actuator_positions({at_.data(), joints}, {from.data(), shafts.size()});
+  map.actuator_positions({moved.data(), joints}, {to.data(), shafts.size()});
+  for (Joint& joint : joints_) {
+    for (Motor& motor : joint.motors) {
+      motor.way = shafts[motor.actuator] * motor.per_rad_at_home;
+      motor.apart = shafts[motor.actuator] - from[motor.actuator];
+      motor.per_rad = kStep / (to[motor.actuator] - from[motor.actuator]);
+      const double ahead = motor.belongs ? (motor.apart - *motor.belongs) * motor.per_rad : 0;
+      ahead_[motor.actuator] = std::isfinite(ahead) ? ahead : 0;
+    }
+  }
+}
+
+double Gantries::skew(const Joint& joint) const noexcept {
+  double foremost = ahead_[joint.motors.front().actuator], hindmost = foremost;
+  for (const Motor& motor : joint.motors) {
+    foremost = std::max(foremost, ahead_[motor.actuator]);
+    hindmost = std::min(hindmost, ahead_[motor.actuator]);
+  }
+  return foremost - hindmost;
+}
+
+void Gantries::forget(IndexSet actuators) noexcept {
+  for (Joint& joint : joints_) {
+    for (Motor& motor : joint.motors) {
+      if (!has(actuators, motor.actuator)) continue;
+      motor.belongs.reset();
+      ahead_[motor.actuator] = 0;
+    }
+  }
+}
+
+void Gantries::start(Joint& joint, bool amiss) noexcept {
+  const bool known = std::ranges::all_of(joint.motors, [](const Motor& motor) { return motor.belongs.has_value(); });
+  for (Motor& motor : joint.motors) {
+    if (!known) {
+      motor.belongs = motor.apart;
+      ahead_[motor.actuator] = 0;
+    }
+    motor.before = ahead_[motor.actuator];
+    motor.left = amiss ? motor.before : 0;
+    motor.rate = motor.held = 0;
+    motor.digits.begin(motor.way, 0);
+    motor.filter.engage(amiss ? 0 : -joint.given.stiffness * motor.before);
+  }
+  joint.allowed = skew(joint) + kMargin * joint.given.max_skew;
+  joint.beyond.restart();
+}
+
+void Gantries::engage(std::size_t joint) noexcept {
+  if (Joint* const found = of(joint)) start(*found, true);
+}
+
+void Gantries::go_on(std::size_t joint) noexcept {
+  if (Joint* const found = of(joint)) start(*found, false);
+}
+
+bool Gantries::froze(Motor& motor, const Joint& joint, const Seen& seen) const noexcept {
+  const double at = at_[joint.joint];
+  const auto motors = static_cast<double>(joint.motors.size());
+  if (seen.answered) motor.digits.note(motor.way, seen.effort / motors + motor.held);
+  if (motor.digits.same() == 0) motor.still_since = at;
+  const double least = std::max(kGoesOnDigits * motor.digits.digit(), kGoesOn * joint.given.max_skew);
+  if (std::abs(at - motor.still_since) <= least) return false;
+  const double enough = std::max(kBreaksLoose * parts_.joints[joint.joint].max_effort / motors,
+                                 kMoreThanUsual * motor.digits.usual_change());
+  const bool pushed = motor.digits.effort_change() > enough;
+  return motor.digits.froze() || (pushed && static_cast<double>(motor.digits.same()) * period_s_ >= kStaysS);
+}
+
+void Gantries::watch(std::size_t joint, const Seen& seen, FaultSink& faults) noexcept {
+  Joint* const found = of(joint);
+  if (found == nullptr) return;
+  for (Motor& motor : found->motors) {
+    if (!froze(motor, *found, seen)) continue;
+    faults.raise({ServoFault::Kind::EncoderFrozen, ServoFault::Part::Actuator,
+                  static_cast<std::uint32_t>(motor.actuator), static_cast<double>(motor.digits.same()) * period_s_,
+                  motor.digits.effort_change()});
+  }
+  const double now = skew(*found);
+  // What was amiss before power may come back; it may not grow.
+  found->allowed = std::min(found->allowed, now + kMargin * found->given.max_skew);
+  if (!found->beyond.step(now, std::max(found->given.max_skew, found->allowed))) return;
+  // What is blocked, weak or not told lags. At rest it is the one that is farthest from its place.
+  const auto off = [&](const Motor& motor) {
+    const double away = seen.wanted - at_[joint] - ahead_[motor.actuator];
+    return seen.wanted_speed == 0 ? std::abs(away) : std::copysign(away, away * seen.wanted_speed);
+  };
+  const Motor& worst = *std::ranges::max_element(found->motors, {}, off);
+  faults.raise({ServoFault::Kind::Skewed, ServoFault::Part::Actuator, static_cast<std::uint32_t>(worst.actuator), now,
+                found->given.max_skew});
+}
+
+void Gantries::hold(std::size_t joint) noexcept {
+  Joint* const found = of(joint);
+  if (found == nullptr) return;
+  const auto& [max_skew, stiffness, damping] = found->given;
+  // More than what its MaxSkew asks for helps nothing, and would tear where a reading is wrong.
+  const double asked = stiffness > 0 ? stiffness * max_skew : parts_.joints[joint].max_effort;
+  const double most = std::min(asked, parts_.joints[joint].max_effort / static_cast<double>(found->motors.size()));
+  for (Motor& motor : found->motors) {
+    const double ahead = ahead_[motor.actuator];
+    motor.rate += ((ahead - motor.before) / period_s_ - motor.rate) * period_s_ / (period_s_ + kRateS);
+    motor.before = ahead;
+    motor.left *= 1 - period_s_ / (period_s_ + kBringsBackS);
+    const double effort = motor.filter.update(-stiffness * (ahead - motor.left) - damping * motor.rate);
+    motor.held = std::clamp(effort, -most, most);
+    torque_[motor.actuator] = motor.held * found->power_a_speed * motor.per_rad;
+  }
+}
+
+std::optional<double> Gantries::belongs(std::size_t actuator) const noexcept {
+  const Motor* const found = motor(actuator);
+  return found == nullptr ? std::nullopt : found->belongs;
+}
+
+void Gantries::take_over(std::size_t actuator, double belongs_rad) noexcept {
+  for (Joint& joint : joints_) {
+    for (Motor& motor : joint.motors) {
+      if (motor.actuator == actuator) motor.belongs = belongs_rad;
+    }
+  }
+}
+
+Expected<> check_gantries(const ServoLoopParts& parts, const Wiring& wiring) {
+  for (std::size_t j = 0; j < parts.joints.size(); ++j) {
+    const std::optional<Gantry>& gantry = parts.joints[j].gantry;
+    if (!gantry) continue;
+    const auto refuse = [j](const char* why) {
+      return failure(MinorCode::InvalidParameterValue,
+                     "servo loop: joint " + std::to_string(j) + " has a Gantry, and " + why);
+    };
+    if (!side_by_side(wiring, j)) return refuse("not several motors of its own; take it out");
+    if (!(gantry->max_skew > 0) || !(gantry->stiffness >= 0) || !(gantry->damping >= 0)) {
+      return refuse("a MaxSkew above 0 is needed, a stiffness and a damping of 0 or more");
+    }
+    if (wiring.follows_itself(j) && (gantry->stiffness > 0 || gantry->damping > 0)) {
+      return refuse("drives that follow their positions themselves, which holds them; leave out Stiffness and Damping");
+    }
+  }
+  return {};
+}
+
+}  // namespace rmac
