@@ -100,6 +100,7 @@ class FeedforwardModel {
   [[nodiscard]] static double bent(double friction, double way, double bound) noexcept {
     constexpr double kElastic = 0.3;  // assumed: below, bristles only bend, and nothing creeps
     const double end = std::copysign(bound, way);
+    if (friction == end) return end;  // it slides, as it does most of the time
     const double slides = std::clamp(((friction + way / 2) / end - kElastic) / (1 - kElastic), 0.0, 1.0);
     // f' = 1 - slides·|f|/g, with `slides` as half of the way has it, solved: a long way ends at g.
     const double gone = slides * std::abs(way) / bound;
