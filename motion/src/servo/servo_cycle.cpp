@@ -199,6 +199,7 @@ void ServoLoop::Impl::go_live() noexcept {
   std::array<double, kMaxJoints> wanted{};
   const std::span<double> aimed(wanted.data(), wiring.actuators());
   transmission.shafts_for(setpoints.positions(), aimed);
+  gantries.place(aimed);
   positions.check_aims(aimed, shafts.rad(), engaged, state);
   settle();
 }
@@ -345,6 +346,7 @@ void ServoLoop::Impl::make_setpoints_of_drives() noexcept {
   if (!wiring.all_take_torque() || torques.know_cogging()) {
     std::array<double, kMaxJoints> wanted{};
     transmission.shafts_for(setpoints.positions(), {wanted.data(), wiring.actuators()});
+    gantries.place(wanted);
     torques.cancel_cogging(shafts.rad(), wanted, controlled());
     aims.step(wanted, controlled() & ~wiring.torque_drives(), state);
   }

@@ -10,24 +10,27 @@ namespace {
 
 constexpr double kBoundX = 0.5;  // mm: MaxFollowingError
 constexpr std::size_t kLeft = 0, kRight = 1, kRightAxis = 4;
-const Gantry kHeld{.max_skew = 0.2, .stiffness = 1550, .damping = 11.1};  // halves of the law's Kp and Kd
+const Gantry kHeldLate{.max_skew = 0.2, .stiffness = 519, .damping = 7.6};  // the same of drives that answer late
+const Gantry kHeld{.max_skew = 0.2, .stiffness = 1550, .damping = 11.1};    // halves of the law's Kp and Kd
 
 /// DMACXYZ with X on two screws, which nothing holds together but a bridge as stiff as `bridge_n_mm`.
 class GantryRun : public MillRun {
  public:
   explicit GantryRun(std::optional<Gantry> gantry, double bridge_n_mm = 0,
-                     std::vector<fieldbus::SimulatedAxis> axes = fieldbus::default_simulated_axes())
+                     std::vector<fieldbus::SimulatedAxis> axes = fieldbus::default_simulated_axes(), bool late = false)
       : bridge_nm_rad_(bridge_n_mm / 1000 / (kRadPerMm * kRadPerMm)) {
     simulated_ = std::make_shared<fieldbus::SimulatedInterface>(axes, 0.001);
+    if (late) simulated_->set_answer_delay(1);
     bus_ = std::make_shared<ServoBus>(simulated_);
-    make(gantry);
+    make(gantry, late);
   }
   /// Another loop on the same drives.
-  void make(const std::optional<Gantry>& gantry) {
+  void make(const std::optional<Gantry>& gantry, bool late = false) {
     mill_.emplace(
         "mill/3-axis/DMACXYZ", bus_,
-        [](nlohmann::json& device) {
+        [late](nlohmann::json& device) {
           nlohmann::json& x = device["Joints"][0];
+          if (late) x["Gains"] = {519, 31140, 7.6};
           for (nlohmann::json& gain : x["Gains"]) gain = 2 * gain.get<double>();
           x["MaxEffort"] = 1600;
           device["Actuators"].insert(device["Actuators"].begin() + 1, device["Actuators"][0]);
@@ -122,10 +125,11 @@ std::vector<fieldbus::SimulatedAxis> sides_that_differ(std::uint64_t seed) {
 TEST(GantryOnMill, IsHeldTogetherThoughItsSidesDifferAndNothingElseHoldsThem) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
-    GantryRun run(kHeld, 0, sides_that_differ(seed));
+    const bool late = seed % 2 == 0;
+    GantryRun run(late ? kHeldLate : kHeld, 0, sides_that_differ(seed), late);
     run.enable();
     EXPECT_TRUE(run.go(20)) << to_string(run.report().fault.kind) << " " << run.report().fault.value;
-    EXPECT_LT(run.largest_skew(), 0.06);
+    EXPECT_LT(run.largest_skew(), late ? 0.15 : 0.06);
     EXPECT_NEAR(run.report().ahead[kLeft] - run.report().ahead[kRight], run.skew_mm(), 1e-3);
   }
 }

@@ -153,6 +153,7 @@ void Gantries::watch(std::size_t joint, const Seen& seen, FaultSink& faults) noe
   Joint* const found = of(joint);
   if (found == nullptr) return;
   for (Motor& motor : found->motors) {
+    motor.left *= 1 - period_s_ / (period_s_ + kBringsBackS);
     if (!froze(motor, *found, seen)) continue;
     faults.raise({ServoFault::Kind::EncoderFrozen, ServoFault::Part::Actuator,
                   static_cast<std::uint32_t>(motor.actuator), static_cast<double>(motor.digits.same()) * period_s_,
@@ -183,10 +184,17 @@ void Gantries::hold(std::size_t joint) noexcept {
     const double ahead = ahead_[motor.actuator];
     motor.rate += ((ahead - motor.before) / period_s_ - motor.rate) * period_s_ / (period_s_ + kRateS);
     motor.before = ahead;
-    motor.left *= 1 - period_s_ / (period_s_ + kBringsBackS);
     const double effort = motor.filter.update(-stiffness * (ahead - motor.left) - damping * motor.rate);
     motor.held = std::clamp(effort, -most, most);
     torque_[motor.actuator] = motor.held * found->power_a_speed * motor.per_rad;
+  }
+}
+
+void Gantries::place(std::span<double> aims) const noexcept {
+  for (const Joint& joint : joints_) {
+    for (const Motor& motor : joint.motors) {
+      if (motor.belongs) aims[motor.actuator] += *motor.belongs + motor.left / motor.per_rad_at_home;
+    }
   }
 }
 

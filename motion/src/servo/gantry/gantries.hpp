@@ -42,7 +42,9 @@ class Gantries {
   };
   /// One cycle of a joint under control.
   void watch(std::size_t joint, const Seen& seen, FaultSink& faults) noexcept;
-  /// The same: finds the torques. Behind `watch`.
+  /// From shaft angles that have the motors in step to those that have them as they belong.
+  void place(std::span<double> aims) const noexcept;
+  /// One cycle of a joint under control: finds the torques. Behind `watch`.
   void hold(std::size_t joint) noexcept;
 
   /// At the shafts, beside what the joints' laws give them.

@@ -47,6 +47,26 @@ TEST_F(ServoModes, PositionDriveIsSentWhereItStandsUntilItIsEnabledAndThenItsSet
   EXPECT_EQ(words(1).mode, DriveMode::CyclicSyncTorque);
 }
 
+TEST_F(ServoModes, PositionDrivesOfAGantryAreNotPulledTogetherAsTheyAreEnabled) {
+  ServoLoopParts made = with(DriveMode::CyclicSyncPosition, std::make_shared<GantryMap>());
+  made.joints.pop_back();
+  made.actuators[2].mode = DriveMode::CyclicSyncPosition;
+  build(std::move(made));
+  put_at(0, 10);
+  put_at(2, -9.4);
+  engage();
+  EXPECT_NEAR(sent_mm(0), 10, 1e-3);
+  EXPECT_NEAR(sent_mm(2), -9.4, 1e-3);
+  for (int i = 1; i <= 5; ++i) {
+    command.setpoint.position[0] += 0.1;
+    cycle();
+    EXPECT_NEAR(sent_mm(0), 10 + 0.2 * i, 1e-3);
+    EXPECT_NEAR(sent_mm(2), -9.4 - 0.2 * i, 1e-3);
+    put_at(0, sent_mm(0));
+    put_at(2, sent_mm(2));
+  }
+}
+
 TEST_F(ServoModes, PositionWordWrapsAsTheDrivesDoes) {
   build(with(DriveMode::CyclicSyncPosition));
   constexpr double kWrap = 2147483.648;  // 2^31 counts in mm
