@@ -15,6 +15,10 @@ void soften(sdk::Joint& joint, double factor) {
   joint.gains[0] /= factor;
   joint.gains[1] /= factor * factor;
   joint.gains[2] /= factor;
+  if (joint.gantry) {
+    joint.gantry->stiffness /= factor;
+    joint.gantry->damping /= factor;
+  }
   // Three times the mass that the gains were made for then lags no more than that mass did.
   constexpr double kShareOfAcceleration = 0.25;
   joint.limits.max_acceleration *= kShareOfAcceleration;

@@ -194,8 +194,9 @@ std::string joint_cause(const ServoFault& fault, const std::string& at) {
       return fmt::format(
           "{}: its encoder tells the same to the last digit for {:.3g} s, while the effort changed by {:.3g}: it "
           "froze, or its shaft is held fast; check the encoder, its cable, its coupling and the brake, and look where "
-          "the axis really is, then reset and find the reference again",
-          at, fault.value, fault.bound);
+          "the axis really is{}, then reset and find the reference again",
+          at, fault.value, fault.bound,
+          fault.part == ServoFault::Part::Actuator ? ", and square what it moves together with others" : "");
     case ServoFault::Kind::Skewed:
       return fmt::format(
           "{}: the motors of its joint stand {:.4g} apart, beyond the bound of {:.4g} (MaxSkew, or without it "

@@ -104,7 +104,7 @@ void ServoLoop::Impl::read(std::uint64_t missed) noexcept {
   positions.step(shafts, joints.velocity(), missed);
   if (positions.late()) joints.forget_steps();
   joints.read(shafts.rad(), shafts.rad_s(), live.all(), live.all() & positions.answered(), setpoints.velocity());
-  gantries.read(shafts.rad());
+  gantries.read(shafts.rad(), shafts.rad_s());
   spindles.read();
 }
 
@@ -141,7 +141,12 @@ void ServoLoop::Impl::finish_reset() noexcept {
   }
   const ServoFault before = state.fault();
   state.finish_reset(stands(), clear);
-  if (before.kind != ServoFault::Kind::None && state.state() == ServoState::Off) positions.forgive(before);
+  if (before.kind != ServoFault::Kind::None && state.state() == ServoState::Off) {
+    const IndexSet without = positions.forgive(before);
+    for (std::size_t j = 0; j < wiring.joints(); ++j) {
+      if (has(without, j)) gantries.forget(wiring.actuators_of(j));
+    }
+  }
   settle();
 }
 
@@ -180,7 +185,6 @@ void ServoLoop::Impl::go_live() noexcept {
     if (!live[j] && operable(j)) {
       live.take(j);
       positions.engaged(j);
-      if (has(positions.lost(), j)) gantries.forget(wiring.actuators_of(j));
       gantries.engage(j);
       setpoints.hold_at(j, joints.position()[j]);
       if (wiring.follows_itself(j)) engaged |= only(j);
@@ -253,8 +257,14 @@ void ServoLoop::Impl::watch_motion(const ServoCommand& command) noexcept {
     if (state.powered() && live[j]) {
       motion_watch.joint(j).step(seen(j), state);
       positions.doubt_place(j, motion_watch.joint(j).doubts_position());
-      gantries.watch(
-          j, {setpoints.position()[j], setpoints.velocity()[j], laws.effort()[j], has(positions.answered(), j)}, state);
+      gantries.watch(j,
+                     {.position = joints.position()[j],
+                      .wanted = setpoints.position()[j],
+                      .wanted_speed = setpoints.velocity()[j],
+                      .wanted_acceleration = setpoints.acceleration()[j],
+                      .effort = laws.effort()[j],
+                      .answered = has(positions.answered(), j)},
+                     state);
     } else {
       motion_watch.joint(j).rest(has(positions.answered(), j) ? std::optional(joints.position()[j]) : std::nullopt);
     }
@@ -302,7 +312,7 @@ void ServoLoop::Impl::run_laws() noexcept {
       const std::optional<double> beside =
           setpoints.pushes(j) ? std::optional(setpoints.force_loop(j).effort()) : std::nullopt;
       if (!laws.run(j, input(j), beside, state)) return;
-      gantries.hold(j);
+      gantries.hold(j, laws.effort()[j]);
     } else if (state.braking()) {
       laws.let_go(j);
     } else {

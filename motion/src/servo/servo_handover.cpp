@@ -4,14 +4,6 @@
 
 namespace rmac {
 
-namespace {
-
-std::optional<double> in_drives_sense(std::optional<double> rad, int direction) noexcept {
-  return rad ? std::optional(direction * *rad) : std::nullopt;
-}
-
-}  // namespace
-
 ServoHandover ServoLoop::Impl::handover() const noexcept {
   ServoHandover result;
   result.count = wiring.actuators();
@@ -28,7 +20,7 @@ ServoHandover ServoLoop::Impl::handover() const noexcept {
                         .setpoint_counts = shaft_counts(part.scale, shaft_set[i]),
                         .torque_nm = part.scale.direction * torques[i],
                         .backlash_side = sense * transmission.correction(wiring.joint_of(i)).side(),
-                        .belongs_rad = in_drives_sense(gantries.belongs(i), part.scale.direction),
+                        .beside = gantries.beside(i),
                         .live = has(under_control, i),
                         .seen = shafts[i].seen(),
                         .believed = known.believed,
@@ -53,7 +45,7 @@ void ServoLoop::Impl::take_over(const ServoHandover& previous) noexcept {
     shafts[i].take_over(found->counts, found->seen);
     positions.take_over(i, {found->believed, found->referenced, found->reference_lost}, found->live);
     torques.take_over(i, part.scale.direction * found->torque_nm);
-    if (found->belongs_rad) gantries.take_over(i, part.scale.direction * *found->belongs_rad);
+    if (found->beside) gantries.take_over(i, *found->beside);
     shaft_set[i] = shaft_rad(part.scale, found->setpoint_counts);
     if (const int sense = part.scale.direction * wiring.sense(i); sense != 0) {
       transmission.correction(wiring.joint_of(i)).set_side(sense * found->backlash_side);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "rmac/motion/drive_scale.hpp"
+
 namespace rmac {
 
 namespace {
@@ -17,7 +19,8 @@ constexpr double kGoesOnDigits = 5;
 constexpr double kStaysS = 0.005;     // to the last digit
 constexpr double kBreaksLoose = 0.2;  // of its share of MaxEffort, by which its own changes: twice the friction
 constexpr double kMoreThanUsual = 2;
-constexpr double kMargin = 0.2;  // of MaxSkew, beyond a skew that there was before power
+constexpr double kMargin = 0.2;     // of MaxSkew, beyond a skew that there was before power
+constexpr double kMostAtPower = 2;  // times MaxSkew: with more there is none
 
 /// The joint has several motors, and they move no other one.
 bool side_by_side(const Wiring& wiring, std::size_t joint) {
@@ -33,25 +36,39 @@ bool side_by_side(const Wiring& wiring, std::size_t joint) {
 
 Gantries::Gantries(const ServoLoopParts& parts, const Wiring& wiring) : parts_(parts), period_s_(parts.period_s) {
   if (parts.virtual_mode) return;
+  const ActuatorMap& map = *parts.actuator_map;
+  using Values = std::array<double, kMaxJoints>;
+  const auto joints_of = [&](Values& all) { return std::span(all).first(wiring.joints()); };
+  const auto motors_of = [&](Values& all) { return std::span(all).first(wiring.actuators()); };
+  Values zero{}, zero_at{}, zero_from{};  // shafts where all counters stand at 0
+  for (std::size_t i = 0; i < wiring.actuators(); ++i) zero[i] = shaft_rad(parts.actuators[i].scale, 0);
+  map.joint_positions(motors_of(zero), joints_of(zero_at));
+  map.actuator_positions(joints_of(zero_at), motors_of(zero_from));
   for (std::size_t j = 0; j < wiring.joints(); ++j) {
     if (!side_by_side(wiring, j)) continue;
     const ServoJoint& joint = parts.joints[j];
-    std::array<double, kMaxJoints> at{}, effort{}, from{}, to{}, torque{};
-    const auto joints_of = [&](std::array<double, kMaxJoints>& all) { return std::span(all).first(wiring.joints()); };
-    const auto motors_of = [&](std::array<double, kMaxJoints>& all) {
-      return std::span(all).first(wiring.actuators());
-    };
+    Values at{}, effort{}, from{}, to{}, torque{};
     effort[j] = 1;
-    parts.actuator_map->actuator_efforts(joints_of(at), joints_of(effort), motors_of(torque));
-    parts.actuator_map->actuator_positions(joints_of(at), motors_of(from));
+    map.actuator_efforts(joints_of(at), joints_of(effort), motors_of(torque));
+    map.actuator_positions(joints_of(at), motors_of(from));
     at[j] = kStep;
-    parts.actuator_map->actuator_positions(joints_of(at), motors_of(to));
-    Joint made{j, joint.gantry.value_or(Gantry{.max_skew = joint.max_following_error}), 0, {}};
+    map.actuator_positions(joints_of(at), motors_of(to));
+    Joint made{j,
+               joint.gantry.value_or(Gantry{.max_skew = joint.max_following_error}),
+               0,
+               OscillationWatch(joint, j, period_s_),
+               {}};
+    int soonest = kMostAnswerDelay;
+    for (std::size_t i = 0; i < wiring.actuators(); ++i) {
+      if (has(wiring.actuators_of(j), i)) soonest = std::min<int>(soonest, wiring.actuator_delays()[i]);
+    }
     for (std::size_t i = 0; i < wiring.actuators(); ++i) {
       if (!has(wiring.actuators_of(j), i)) continue;
       const double per_rad = kStep / (to[i] - from[i]);
-      const EncoderDigits digits(dead_stop(joint.bounds.stop_deceleration, period_s_), period_s_);
-      made.motors.push_back({i, per_rad, EffortFilter(joint.mechanics, period_s_), digits});
+      const double late_s = (wiring.actuator_delays()[i] - soonest) * period_s_;
+      made.motors.push_back({i, parts.actuators[i].scale.direction, per_rad, late_s, zero[i] - zero_from[i],
+                             EffortFilter(joint.mechanics, period_s_),
+                             EncoderDigits(dead_stop(joint.bounds.stop_deceleration, period_s_), period_s_)});
       made.power_a_speed += torque[i] / per_rad;
     }
     joints_.push_back(std::move(made));
@@ -71,23 +88,26 @@ const Gantries::Motor* Gantries::motor(std::size_t actuator) const noexcept {
   return nullptr;
 }
 
-void Gantries::read(std::span<const double> shafts) noexcept {
+void Gantries::read(std::span<const double> shafts, std::span<const double> rad_s) noexcept {
   if (joints_.empty()) return;
   const ActuatorMap& map = *parts_.actuator_map;
-  const std::size_t joints = parts_.joints.size();
-  std::array<double, kMaxJoints> moved{}, from{}, to{};
-  map.joint_positions(shafts, {at_.data(), joints});
+  const std::size_t joints = parts_.joints.size(), actuators = shafts.size();
+  std::array<double, kMaxJoints> now{}, moved{}, from{}, to{};
+  std::copy(shafts.begin(), shafts.end(), now.begin());
+  for (const Joint& joint : joints_) {
+    for (const Motor& motor : joint.motors) now[motor.actuator] += rad_s[motor.actuator] * motor.late_s;
+  }
+  map.joint_positions({now.data(), actuators}, {at_.data(), joints});
   moved = at_;
   for (const Joint& joint : joints_) moved[joint.joint] += kStep;
-  map.actuator_positions({at_.data(), joints}, {from.data(), shafts.size()});
-  map.actuator_positions({moved.data(), joints}, {to.data(), shafts.size()});
+  map.actuator_positions({at_.data(), joints}, {from.data(), actuators});
+  map.actuator_positions({moved.data(), joints}, {to.data(), actuators});
   for (Joint& joint : joints_) {
     for (Motor& motor : joint.motors) {
       motor.way = shafts[motor.actuator] * motor.per_rad_at_home;
-      motor.apart = shafts[motor.actuator] - from[motor.actuator];
+      motor.apart = now[motor.actuator] - from[motor.actuator];
       motor.per_rad = kStep / (to[motor.actuator] - from[motor.actuator]);
-      const double ahead = motor.belongs ? (motor.apart - *motor.belongs) * motor.per_rad : 0;
-      ahead_[motor.actuator] = std::isfinite(ahead) ? ahead : 0;
+      ahead_[motor.actuator] = motor.belongs ? (motor.apart - *motor.belongs) * motor.per_rad : 0;
     }
   }
 }
@@ -119,13 +139,14 @@ void Gantries::start(Joint& joint, bool amiss) noexcept {
       ahead_[motor.actuator] = 0;
     }
     motor.before = ahead_[motor.actuator];
-    motor.left = amiss ? motor.before : 0;
+    if (amiss || !known) motor.left = motor.before;
     motor.rate = motor.held = 0;
-    motor.digits.begin(motor.way, 0);
-    motor.filter.engage(amiss ? 0 : -joint.given.stiffness * motor.before);
+    motor.filter.engage(-joint.given.stiffness * (motor.before - motor.left));
   }
-  joint.allowed = skew(joint) + kMargin * joint.given.max_skew;
+  joint.allowed = std::min(skew(joint) + kMargin * joint.given.max_skew, kMostAtPower * joint.given.max_skew);
   joint.beyond.restart();
+  joint.oscillation.rest();
+  joint.begins = true;
 }
 
 void Gantries::engage(std::size_t joint) noexcept {
@@ -139,7 +160,13 @@ void Gantries::go_on(std::size_t joint) noexcept {
 bool Gantries::froze(Motor& motor, const Joint& joint, const Seen& seen) const noexcept {
   const double at = at_[joint.joint];
   const auto motors = static_cast<double>(joint.motors.size());
-  if (seen.answered) motor.digits.note(motor.way, seen.effort / motors + motor.held);
+  const double effort = seen.effort / motors + motor.held;
+  if (joint.begins) {
+    motor.digits.begin(motor.way, effort);
+    motor.still_since = at;
+    return false;
+  }
+  if (seen.answered) motor.digits.note(motor.way, effort);
   if (motor.digits.same() == 0) motor.still_since = at;
   const double least = std::max(kGoesOnDigits * motor.digits.digit(), kGoesOn * joint.given.max_skew);
   if (std::abs(at - motor.still_since) <= least) return false;
@@ -149,44 +176,70 @@ bool Gantries::froze(Motor& motor, const Joint& joint, const Seen& seen) const n
   return motor.digits.froze() || (pushed && static_cast<double>(motor.digits.same()) * period_s_ >= kStaysS);
 }
 
+void Gantries::watch_skew(Joint& joint, const Seen& seen, FaultSink& faults) noexcept {
+  const double now = skew(joint);
+  // What was amiss before power may come back; it may not grow.
+  joint.allowed = std::min(joint.allowed, now + kMargin * joint.given.max_skew);
+  const double bound = std::max(joint.given.max_skew, joint.allowed);
+  const bool too_far = joint.begins && now > bound;
+  if (!joint.beyond.step(now, bound) && !too_far) return;
+  // What is blocked, weak or not told lags. At rest it is the one that is farthest from its place.
+  const auto off = [&](const Motor& motor) {
+    const double away = seen.wanted - seen.position - ahead_[motor.actuator];
+    return seen.wanted_speed == 0 ? std::abs(away) : std::copysign(away, away * seen.wanted_speed);
+  };
+  const Motor& worst = *std::ranges::max_element(joint.motors, {}, off);
+  faults.raise(
+      {ServoFault::Kind::Skewed, ServoFault::Part::Actuator, static_cast<std::uint32_t>(worst.actuator), now, bound});
+}
+
 void Gantries::watch(std::size_t joint, const Seen& seen, FaultSink& faults) noexcept {
   Joint* const found = of(joint);
   if (found == nullptr) return;
   for (Motor& motor : found->motors) {
     motor.left *= 1 - period_s_ / (period_s_ + kBringsBackS);
-    if (!froze(motor, *found, seen)) continue;
-    faults.raise({ServoFault::Kind::EncoderFrozen, ServoFault::Part::Actuator,
-                  static_cast<std::uint32_t>(motor.actuator), static_cast<double>(motor.digits.same()) * period_s_,
-                  motor.digits.effort_change()});
+    const auto index = static_cast<std::uint32_t>(motor.actuator);
+    const double ahead = ahead_[motor.actuator];
+    if (!std::isfinite(ahead)) {
+      faults.raise({ServoFault::Kind::NotANumber, ServoFault::Part::Actuator, index, ahead, 0});
+    } else if (froze(motor, *found, seen)) {
+      faults.raise({ServoFault::Kind::EncoderFrozen, ServoFault::Part::Actuator, index,
+                    static_cast<double>(motor.digits.same()) * period_s_, motor.digits.effort_change()});
+    }
   }
-  const double now = skew(*found);
-  // What was amiss before power may come back; it may not grow.
-  found->allowed = std::min(found->allowed, now + kMargin * found->given.max_skew);
-  if (!found->beyond.step(now, std::max(found->given.max_skew, found->allowed))) return;
-  // What is blocked, weak or not told lags. At rest it is the one that is farthest from its place.
-  const auto off = [&](const Motor& motor) {
-    const double away = seen.wanted - at_[joint] - ahead_[motor.actuator];
-    return seen.wanted_speed == 0 ? std::abs(away) : std::copysign(away, away * seen.wanted_speed);
-  };
-  const Motor& worst = *std::ranges::max_element(found->motors, {}, off);
-  faults.raise({ServoFault::Kind::Skewed, ServoFault::Part::Actuator, static_cast<std::uint32_t>(worst.actuator), now,
-                found->given.max_skew});
+  watch_skew(*found, seen, faults);
+  const Motor& first = found->motors.front();
+  found->oscillation.step({.effort = first.held * static_cast<double>(found->motors.size()),
+                           .answer_delay = parts_.actuators[first.actuator].bus->interface->answer_delay(
+                               parts_.actuators[first.actuator].axis),
+                           .position = ahead_[first.actuator],
+                           .acceleration_set = seen.wanted_acceleration},
+                          faults);
+  found->begins = false;
 }
 
-void Gantries::hold(std::size_t joint) noexcept {
+void Gantries::hold(std::size_t joint, double effort) noexcept {
   Joint* const found = of(joint);
   if (found == nullptr) return;
   const auto& [max_skew, stiffness, damping] = found->given;
-  // More than what its MaxSkew asks for helps nothing, and would tear where a reading is wrong.
-  const double asked = stiffness > 0 ? stiffness * max_skew : parts_.joints[joint].max_effort;
-  const double most = std::min(asked, parts_.joints[joint].max_effort / static_cast<double>(found->motors.size()));
+  double largest = 0;
   for (Motor& motor : found->motors) {
     const double ahead = ahead_[motor.actuator];
     motor.rate += ((ahead - motor.before) / period_s_ - motor.rate) * period_s_ / (period_s_ + kRateS);
     motor.before = ahead;
-    const double effort = motor.filter.update(-stiffness * (ahead - motor.left) - damping * motor.rate);
-    motor.held = std::clamp(effort, -most, most);
-    torque_[motor.actuator] = motor.held * found->power_a_speed * motor.per_rad;
+    motor.held = motor.filter.update(-stiffness * (ahead - motor.left) - damping * motor.rate);
+    largest = std::max(largest, std::abs(motor.held));
+  }
+  // All by the same part, so that they push their joint nowhere; no motor beyond its share. More than what MaxSkew asks
+  // for helps nothing, and would tear where a reading is wrong.
+  const double max_effort = parts_.joints[joint].max_effort;
+  const double free = std::max(0.0, max_effort - std::abs(effort)) / static_cast<double>(found->motors.size());
+  const double most = stiffness > 0 ? std::min(free, stiffness * max_skew) : free;
+  const double part = largest > most ? most / largest : 1;
+  for (Motor& motor : found->motors) {
+    motor.held *= part;
+    const double torque = motor.held * found->power_a_speed * motor.per_rad;
+    torque_[motor.actuator] = std::isfinite(torque) ? torque : 0;
   }
 }
 
@@ -198,15 +251,19 @@ void Gantries::place(std::span<double> aims) const noexcept {
   }
 }
 
-std::optional<double> Gantries::belongs(std::size_t actuator) const noexcept {
+std::optional<ServoHandover::Beside> Gantries::beside(std::size_t actuator) const noexcept {
   const Motor* const found = motor(actuator);
-  return found == nullptr ? std::nullopt : found->belongs;
+  if (found == nullptr || !found->belongs) return std::nullopt;
+  return ServoHandover::Beside{found->direction * (*found->belongs - found->at_zero_counts),
+                               found->direction * found->left / found->per_rad_at_home};
 }
 
-void Gantries::take_over(std::size_t actuator, double belongs_rad) noexcept {
+void Gantries::take_over(std::size_t actuator, const ServoHandover::Beside& beside) noexcept {
   for (Joint& joint : joints_) {
     for (Motor& motor : joint.motors) {
-      if (motor.actuator == actuator) motor.belongs = belongs_rad;
+      if (motor.actuator != actuator) continue;
+      motor.belongs = motor.direction * beside.belongs_rad + motor.at_zero_counts;
+      motor.left = motor.direction * beside.left_rad * motor.per_rad_at_home;
     }
   }
 }

@@ -261,7 +261,7 @@ void PositionWatch::engaged(std::size_t joint) noexcept {
   joints_[joint].coasting = 0;
 }
 
-void PositionWatch::forgive(const ServoFault& fault) noexcept {
+IndexSet PositionWatch::forgive(const ServoFault& fault) noexcept {
   IndexSet without = displaced_joints_ | std::exchange(suspected_, 0);
   if (fault.kind == ServoFault::Kind::EncoderJump || fault.kind == ServoFault::Kind::EncoderFrozen ||
       fault.kind == ServoFault::Kind::Displaced) {
@@ -278,6 +278,7 @@ void PositionWatch::forgive(const ServoFault& fault) noexcept {
     }
   }
   displaced_joints_ = 0;
+  return without;
 }
 
 }  // namespace rmac

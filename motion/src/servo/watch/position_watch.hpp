@@ -72,7 +72,8 @@ class PositionWatch {
     suspected_ = doubtful ? suspected_ | only(joint) : suspected_ & ~only(joint);
   }
   /// A reset left this fault: joints that were displaced, or jumped, count where they are, without their reference.
-  void forgive(const ServoFault& fault) noexcept;
+  /// Returns the joints of which nobody knows the place.
+  IndexSet forgive(const ServoFault& fault) noexcept;
   /// Joints whose reference is to be found again.
   [[nodiscard]] IndexSet lost() const noexcept { return lost_; }
 

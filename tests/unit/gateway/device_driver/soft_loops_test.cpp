@@ -23,8 +23,12 @@ TEST(SoftLoops, DividePidsAndLeaveWhatStandsBehindThem) {
   device.joints = {joint_with("PIDServoControlLaw", {1600, 128000, 8}),
                    joint_with("FeedforwardFeedbackServoControlLaw", {800, 6400, 16, 0.1, 0.02, 19, 3})};
   device.held_joints = {joint_with("PIDServoControlLaw", {80, 64, 4})};
+  device.joints[0].gantry = Gantry{.max_skew = 0.2, .stiffness = 800, .damping = 4};
   const sdk::DeviceObject soft = softened(device, 8).value();
   EXPECT_THAT(soft.joints[0].gains, ElementsAre(200, 2000, 1));
+  EXPECT_EQ(soft.joints[0].gantry->max_skew, 0.2);
+  EXPECT_EQ(soft.joints[0].gantry->stiffness, 100) << "each side is as soft as its joint";
+  EXPECT_EQ(soft.joints[0].gantry->damping, 0.5);
   EXPECT_THAT(soft.joints[1].gains, ElementsAre(100, 100, 2, 0.1, 0.02, 19, 3));
   EXPECT_THAT(soft.held_joints[0].gains, ElementsAre(10, 1, 0.5));
   for (const sdk::Joint& joint : soft.joints) {

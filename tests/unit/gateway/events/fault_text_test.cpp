@@ -67,6 +67,11 @@ TEST_F(FaultText, SaysOfALoopWhatIsWrongWithIt) {
       text(of_joint(ServoFault::Kind::EncoderFrozen, 0.02, 40)),
       HasSubstr("joint 1 (Y): its encoder tells the same to the last digit for 0.02 s, while the effort changed "
                 "by 40: it froze, or its shaft is held fast; check the encoder"));
+  EXPECT_THAT(text({ServoFault::Kind::EncoderFrozen, ServoFault::Part::Actuator, 1, 0.02, 40}),
+              HasSubstr("drive of actuator 1 (bus far, axis 1): its encoder tells the same to the last digit for 0.02 "
+                        "s, while the effort changed by 40: it froze, or its shaft is held fast; check the encoder, "
+                        "its cable, its coupling and the brake, and look where the axis really is, and square what "
+                        "it moves together with others, then reset"));
   EXPECT_THAT(text({ServoFault::Kind::Skewed, ServoFault::Part::Actuator, 1, 0.3, 0.2}),
               HasSubstr("drive of actuator 1 (bus far, axis 1): the motors of its joint stand 0.3 apart, beyond the "
                         "bound of 0.2 (MaxSkew, "));

@@ -8,12 +8,12 @@
 
 #include "rmac/motion/drive_scale.hpp"
 #include "rmac/motion/force_control.hpp"
-#include "rmac/motion/servo/gantry.hpp"
 #include "rmac/motion/joint.hpp"
 #include "rmac/motion/joint_mechanics.hpp"
 #include "rmac/motion/limits.hpp"
 #include "rmac/motion/ports/digital_control_interface.hpp"
 #include "rmac/motion/servo/cogging.hpp"
+#include "rmac/motion/servo/gantry.hpp"
 #include "rmac/sdk/config/module_choice.hpp"
 
 namespace rmac::sdk {
