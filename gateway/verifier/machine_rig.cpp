@@ -11,12 +11,12 @@ tl::expected<std::unique_ptr<MachineRig>, CounterExample> MachineRig::assemble(c
   watch.step("assembling");
   auto loops =
       gateway::ClosedLoops::assemble(device,
-                                     {.period_s = kPeriod_s,
+                                     {.period_s = task.period_s,
                                       .virtual_mode = virtual_mode,
                                       .before_cycle = [&watch] { watch.step("a servo cycle on the axis models"); }},
                                      task.loader);
   if (!loops) return found("assembling", loops.error().message, -1, {});
-  return std::unique_ptr<MachineRig>(new MachineRig(std::move(*loops)));
+  return std::unique_ptr<MachineRig>(new MachineRig(std::move(*loops), task.period_s));
 }
 
 Checked MachineRig::power_up() {
