@@ -28,17 +28,19 @@ def soft_gains(joint):
         softer *= 0.7
 
 
-def measured(joint, effort_per_mass=1000.0):
-    """The response of `joint` under soft gains, as the record of its strokes shows it."""
+def measured(joint, effort_per_mass=1000.0, cogging=lambda places: 0 * places):
+    """The response of `joint` under soft gains, as the record of its strokes shows it; `cogging`: N at these places, which act and are
+    no effort."""
     setpoints = list(strokes(20, 5))
     steady = [abs(speed) > 1e-6 and abs(change) * PERIOD <= 1e-3 * abs(speed) for _, speed, change in setpoints]
     sine = swept_sine(effort_per_mass * joint.mass, full_hz=70, **SWEEP)
     added = np.zeros(len(setpoints))
     for begin in np.flatnonzero(np.diff([0, *steady]) == 1):
         added[begin:begin + len(sine)] = sine
-    positions, efforts = joint.run([(where, speed) for where, speed, _ in setpoints],
-                                   soft_gains(joint), added)
     wanted = np.array(setpoints)
+    unseen = cogging(wanted[:, 0])
+    positions, efforts = joint.run([(where, speed) for where, speed, _ in setpoints], soft_gains(joint), added + unseen)
+    efforts = efforts - unseen
     columns = {"t_s": np.arange(len(wanted)) * PERIOD, "q1": wanted[:, 0], "qd1": wanted[:, 1], "qdd1": wanted[:, 2],
                "a1": positions, "effort1": efforts}
     return frequency_response.measure([columns], 1, SWEEP["period_s"], SWEEP["sweeps"], (20, 495))
@@ -90,6 +92,21 @@ class JointsThatBend(unittest.TestCase):
                 found = frequency_response.fit(measured(stiff), PERIOD)
                 self.assertAlmostEqual(found.mass / stiff.mass, 1, delta=0.05)
                 self.assertEqual(loop_design.design(found, 40).filters.notches, [])
+
+    def test_a_motor_that_cogs_hides_no_resonance(self):
+        """Twice as much as the sines have, every 8 mm of a stroke of 20, as a linear motor's magnets do: the loop, which is soft, lets the
+        joint drift by far more than the sines do."""
+        for seed, joint in self.joints[:6]:
+            wanted = as_samples_show_it(joint.resonance_hz)
+            if wanted > 470:
+                continue
+            with self.subTest(seed=seed, joint=joint):
+                size = 2000 * joint.mass
+                found = frequency_response.fit(
+                    measured(joint, cogging=lambda places, size=size: size * np.sin(2 * np.pi * places / 8.0)), PERIOD)
+                self.assertLess(found.misfit, 0.1)
+                nearest = min(found.resonances(), key=lambda mode: abs(mode[0] - wanted))
+                self.assertAlmostEqual(nearest[0] / wanted, 1, delta=0.01)
 
 
 class LinesOfOneMode(unittest.TestCase):

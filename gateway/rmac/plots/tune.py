@@ -206,7 +206,8 @@ def crept(given, head, plant, bent, lead):
             "motor": None if creep.no_cogging(motor) else {
                 "actuator": motor.actuators[0], "of": len(head["actuators"]), "rated_torque": motor.rated_torque,
                 "cogging_in_force": as_device_json(head["actuators"][motor.actuators[0]]["cogging"]),
-                "cogging": {"Lead": rounded(plant.delay_s), "Harmonics": harmonics}},
+                "cogging": {"Lead": rounded(plant.delay_s), "Harmonics": harmonics},
+                "hidden": [{"order": order, "hz": hz} for order, hz in found.hidden]},
             "no_cogging": creep.no_cogging(motor)}
 
 
