@@ -12,6 +12,8 @@ from bending_joint import PERIOD, BendingJoint, ClosedLoop, strokes, swept_sine
 sys.path.insert(0, str(pathlib.Path(os.environ["RMAC_SOURCE"], "gateway/rmac/plots")))
 import frequency_response  # noqa: E402
 import loop_design  # noqa: E402
+import servo_model  # noqa: E402
+import tune  # noqa: E402
 
 SWEEP = dict(from_hz=20, to_hz=495, period_s=0.5, sweeps=7)
 FIRST_SEED, SEEDS = int(os.environ.get("RMAC_SEED", "1")), int(os.environ.get("RMAC_SEEDS", "12"))
@@ -92,6 +94,17 @@ class JointsThatBend(unittest.TestCase):
                 found = frequency_response.fit(measured(stiff), PERIOD)
                 self.assertAlmostEqual(found.mass / stiff.mass, 1, delta=0.05)
                 self.assertEqual(loop_design.design(found, 40).filters.notches, [])
+
+    def test_sines_that_move_a_motor_within_its_play_are_told_from_the_joint(self):
+        """The motor alone, which has 0.3 to 0.6 of the mass: the loop that suits it is not proposed for the joint."""
+        for seed, joint in self.joints[:4]:
+            with self.subTest(seed=seed, joint=joint):
+                alone = joint.elsewhere(5000 / joint.resonance_hz)
+                alone.motor, alone.load = 0.6 * joint.motor, 0.01 * joint.motor
+                plant = servo_model.Plant(joint.mass, joint.viscous, 0.0, 0.0, 0.0017)
+                with self.assertRaisesRegex(frequency_response.Unmeasured, "play.*--sweep-effort"):
+                    tune.check_mass(plant, frequency_response.fit(measured(alone), PERIOD), "mm")
+                tune.check_mass(plant, self.found[seed], "mm")
 
     def test_a_motor_that_cogs_hides_no_resonance(self):
         """Twice as much as the sines have, every 8 mm of a stroke of 20, as a linear motor's magnets do: the loop, which is soft, lets the

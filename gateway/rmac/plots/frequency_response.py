@@ -149,9 +149,8 @@ def sines_of(columns, joint, sweep_s, sweeps):
 
 
 def measure(records, joint, sweep_s, sweeps, band):
-    """The response of joint `joint` (from 1) in the columns of these records together, over `band` (Hz). Cut out as they are, pairs
-    of sines tell most where there is white noise; a drift that a straight line does not take out, as of a joint that cogs in front of
-    a soft loop, is less in the way where they fade in and out. What shows more counts."""
+    """The response of joint `joint` (from 1) in the columns of these records together, over `band` (Hz). Pairs of sines fade in and
+    out: what drifts meanwhile, as a joint that cogs or rings in front of a soft loop, would be in every line otherwise."""
     period = period_of(records[0])
     half = int(round(sweep_s / period))
     pairs = [[_level(values[part]) for values in (columns[f"a{joint}"] - columns[f"q{joint}"], columns[f"effort{joint}"])]
@@ -162,9 +161,8 @@ def measure(records, joint, sweep_s, sweeps, band):
     odd = np.arange(1, len(frequency) - 1, 2)
     odd = odd[(frequency[odd] >= band[0]) & (frequency[odd] <= band[1])]
     # The window of Hann adds to an odd line its neighbours, which are even, and hold no answer.
-    fades = (np.ones(2 * half), np.hanning(2 * half + 1)[:-1])
-    return min((_answer(np.fft.rfft(np.array(pairs) * fade)[:, :, odd], frequency[odd]) for fade in fades),
-               key=lambda response: np.median(response.spread))
+    lines = np.fft.rfft(np.array(pairs) * np.hanning(2 * half + 1)[:-1])[:, :, odd]
+    return _answer(lines, frequency[odd])
 
 
 def _answer(lines, frequency):

@@ -21,6 +21,8 @@ import servo_model as model
 
 # Further off than this (rms of the logarithm of measured over model), the model is not the joint's.
 WORST_MISFIT = 0.4
+# Times that what sines move may be lighter or heavier than what swings move: more, and they are not one joint.
+MOST_OF_MASS = 1.6
 # Phase margins in degrees: below the first a loop rings from one sine into the next; the second is of one that does not.
 LEAST_TO_SWEEP = 5.0
 SETTLES = 45.0
@@ -166,6 +168,19 @@ def as_it_answers(columns, joint, bent):
                           delay=bent.delay_s + bent.lag_s, window_s=window)
 
 
+def check_mass(plant, bent, unit):
+    """That sines moved all that swings move. Within play, or where friction holds the load, they move the motor alone, and a loop for
+    that swings as soon as the load goes along."""
+    share = bent.mass / plant.mass
+    if 1 / MOST_OF_MASS <= share <= MOST_OF_MASS:
+        return
+    of = "N·m·s²/deg" if unit == "deg" else "N·s²/mm"
+    raise frequency_response.Unmeasured(
+        f"sines move {bent.mass:.3g} {of}, and swings {plant.mass:.3g}: the sines do not show the joint's whole mass, as where they move a "
+        "motor within its play, or friction holds what is behind it; nothing is proposed. Sines of more effort reach farther: "
+        "--sweep-effort")
+
+
 def swept(given):
     """Columns of each record of sines."""
     return [model.read_record(file, begin)[1] for file, begin in zip(given.sweep, given.sweep_begin)]
@@ -222,6 +237,7 @@ def main():
         bent, response = measured_joint(given, plant)
         if response is not None:
             plant = as_it_answers(columns, given.joint, bent)
+            check_mass(plant, bent, joint["unit"])
         proposed = design.design(bent, given.margin, given.bandwidth)
         lead = plant.delay_s + proposed.filters.delay_s()
         creeping = crept(given, head, plant, bent, lead)
