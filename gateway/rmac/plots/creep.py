@@ -266,8 +266,9 @@ def find(head, records, joint, plant, joint_model):
     amplitudes = [motor.torque_of(-value, unit) for value in found[2:]]
     left_over = {order: bent_by[order] * complex(amplitudes[2 * i], amplitudes[2 * i + 1]) for i, order in enumerate(orders)}
     hidden = [order for order, share in bent_by.items() if not 1 / MOST_BENT <= share <= MOST_BENT]
-    for order in hidden:
-        del left_over[order]
+    # Of what is above noise as it is seen and as it would be told.
+    seen = {order: abs(left_over.pop(order)) / max(1.0, bent_by[order]) for order in hidden}
+    hidden = [order for order, size in seen.items() if size > LEAST_SHARE * motor.rated_torque]
     if no_cogging(motor):
         left_over = {}
     whole = {**motor.known, **{order: size + motor.known.get(order, 0) for order, size in left_over.items()}}

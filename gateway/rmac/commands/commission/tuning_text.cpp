@@ -1,6 +1,7 @@
 #include "gateway/rmac/commands/commission/tuning_text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <vector>
@@ -43,12 +44,17 @@ void print_creep(const Json& found, const char* way, const char* effort) {
                size, 100 * size / motor["rated_torque"].get<double>());
   }
   const Json hidden = motor.is_null() ? Json::array() : motor["hidden"];
-  for (const Json& one : hidden) {
+  if (!hidden.empty()) {
+    std::vector<std::string> orders, places;
+    for (const Json& one : hidden) {
+      orders.push_back(fmt::format("{}", one["order"].get<int>()));
+      places.push_back(fmt::format("{:.3g}", one["hz"].get<double>()));
+    }
     fmt::print(
-        "cogging of {} periods a turn is not told: it passed at {:.3g} Hz, where the joint gives way so that it does "
-        "not "
-        "show how much there is\n",
-        one["order"].get<int>(), one["hz"].get<double>());
+        "cogging of {} periods a turn is not told: it passed at {} Hz, where the joint gives way so that it does not "
+        "show "
+        "how much there is\n",
+        fmt::join(orders, ", "), fmt::join(places, ", "));
   }
   if (!motor.is_null() && harmonics.empty() && hidden.empty()) fmt::print("cogging: none\n");
   const double explained = 100 * creep["explained"].get<double>();
