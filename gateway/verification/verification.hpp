@@ -20,8 +20,8 @@ class Verification {
     std::filesystem::path program;                      ///< rmac-verify
     std::filesystem::path verdicts;                     ///< folder for what passed; empty: nothing is remembered
     std::vector<std::filesystem::path> module_folders;  ///< searched after the mechanism's own
-    double period_s = 0.001;                            ///< cycle of the servo loop that it is to run in
     std::chrono::seconds patience{600};                 ///< then the verifier is killed
+    double period_s = 0.001;                            ///< cycle of the servo loop that it is to run in
   };
 
   explicit Verification(Options options) : options_(std::move(options)) {}
