@@ -135,13 +135,15 @@ class Creep(unittest.TestCase):
         for seed in range(FIRST, FIRST + SEEDS):
             with self.subTest(seed=seed):
                 joint = CreepingJoint(seed)
-                joint.coulomb *= 1e-3
+                joint.coulomb *= 1e-6
                 joint.cogging = {2: (0.08 * joint.rated, 1.0 + seed), 4: (0.02 * joint.rated, 2.0)}
                 _, found = self.find(joint)
                 told = {order: complex(cosine, -sine) for order, cosine, sine in found.harmonics}
                 for order, (size, phase) in joint.cogging.items():
                     self.assertLess(abs(told.pop(order) - size * np.exp(1j * phase)), 0.1 * size, order)
                 self.assertLess(sum(map(abs, told.values())), 0.01 * joint.rated, told)
+                # What the laws with feedforward take: none of a Stribeck speed that nobody saw.
+                self.assertEqual(found.friction, creep.NO_FRICTION)
 
     def test_takes_no_pull_that_differs_from_turn_to_turn_for_cogging(self):
         """A cable that hangs on the table pulls by where it is, not by the motor's angle."""

@@ -27,6 +27,8 @@ LEAST_SHARE = 0.001  # of the rated torque; less is not worth a harmonic
 # Of what a rigid joint shows of a harmonic: where a soft one shows more than so many times as much, or as little, what it shows says
 # more about how it bends and sticks than about the motor.
 MOST_BENT = 1.5
+# Presliding, breakaway and Stribeck's speed as the laws with feedforward take them.
+SHAPES = ((1e-6, 1.0), (1.0, 3.0), (0.001, 100.0))
 
 
 @dataclass
@@ -51,12 +53,15 @@ class Motor:
 
 @dataclass
 class Friction:
-    """Of a joint that slides, and how it builds up: None where none is seen."""
+    """Of a joint that slides, and how it builds up."""
 
     sliding: float
     presliding: float
     breakaway: float
     stribeck_speed: float
+
+
+NO_FRICTION = Friction(0.0, 0.0, 1.0, 1.0)
 
 
 @dataclass
@@ -242,7 +247,8 @@ def find(head, records, joint, plant, joint_model):
 
     def shape_of(logarithms):
         presliding, beyond, stribeck = logarithms
-        return (turn * np.exp(presliding), 1 + np.exp(beyond), np.median(np.abs(turning.speed)) * np.exp(stribeck))
+        shape = turn * np.exp(presliding), 1 + np.exp(beyond), np.median(np.abs(turning.speed)) * np.exp(stribeck)
+        return tuple(float(np.clip(value, *bounds)) for value, bounds in zip(shape, SHAPES))
 
     start = np.log([0.001, 0.1, 0.5])
     known = list(motor.known)
@@ -271,9 +277,10 @@ def find(head, records, joint, plant, joint_model):
     hidden = [order for order, size in seen.items() if size > LEAST_SHARE * motor.rated_torque]
     if no_cogging(motor):
         left_over = {}
+    friction = Friction(float(found[0]), *shape) if found[0] > least else NO_FRICTION
     whole = {**motor.known, **{order: size + motor.known.get(order, 0) for order, size in left_over.items()}}
     harmonics = [(order, size.real, size.imag) for order, size in whole.items()
                  if abs(size) > LEAST_SHARE * motor.rated_torque]
-    return motor, Creep(Friction(max(float(found[0]), 0.0), *(float(value) for value in shape)), float(found[1]), harmonics,
+    return motor, Creep(friction, float(found[1]), harmonics,
                         1 - float(np.mean(left ** 2) / np.mean((wanted - wanted.mean()) ** 2)),
                         [] if no_cogging(motor) else [(order, order * passing) for order in hidden])

@@ -31,11 +31,15 @@ void print_filters(const Json& filters) {
 void print_creep(const Json& found, const char* way, const char* effort) {
   const Json &creep = found["creep"], &motor = creep["motor"], &parameters = creep["parameters"];
   const auto number = [&](const char* key) { return parameters[key][0].get<double>(); };
-  fmt::print(
-      "friction slides at {:.3g} {}, builds up over {:.3g} {} and breaks away at {:.2f} times that, which is gone "
-      "at {:.2g} {}/s\n",
-      creep["friction"].get<double>(), effort, number("presliding"), way, number("breakaway"), number("stribeck_speed"),
-      way);
+  if (creep["friction"] == 0) {
+    fmt::print("friction: none\n");
+  } else {
+    fmt::print(
+        "friction slides at {:.3g} {}, builds up over {:.3g} {} and breaks away at {:.2f} times that, which is gone "
+        "at {:.2g} {}/s\n",
+        creep["friction"].get<double>(), effort, number("presliding"), way, number("breakaway"),
+        number("stribeck_speed"), way);
+  }
   if (motor.is_null()) fmt::print("cogging is not told: {}\n", creep["no_cogging"].get<std::string>());
   const Json harmonics = motor.is_null() ? Json::array() : motor["cogging"]["Harmonics"];
   for (const Json& one : harmonics) {
