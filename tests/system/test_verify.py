@@ -219,6 +219,13 @@ class Verify(unittest.TestCase):
         operator.call("authority.acquire")
         self.assertIn("swings", operator.refusal("Device.Load", Name="DMACXYZ").message)
 
+    def test_a_part_under_the_tool_is_in_nobodys_way(self):
+        """The simulated bus may have one; the moves that are planned know nothing of it, and loops are what is looked at."""
+        with device_of(self.appliance) as device:
+            device["DigitalControlInterface"]["Parameters"].update(contact_surface_mm=-10, contact_stiffness_n_mm=20000)
+        done = self.verify(self.appliance.tree / "mill/3-axis/DMACXYZ")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def verify(self, path, *words):
         return subprocess.run([BUILD / "bin/rmac", "verify", path, *words], stdin=subprocess.DEVNULL,
                               capture_output=True, text=True, timeout=120, check=False, env=os.environ)
