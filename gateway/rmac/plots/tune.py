@@ -23,6 +23,7 @@ import servo_model as model
 WORST_MISFIT = 0.4
 # Times that what sines move may be lighter or heavier than what swings move: more, and they are not one joint.
 MOST_OF_MASS = 1.6
+OF_FRICTION = 0.25  # an effort that does not throw a sliding joint off its flank
 # Phase margins in degrees: below the first a loop rings from one sine into the next; the second is of one that does not.
 LEAST_TO_SWEEP = 5.0
 SETTLES = 45.0
@@ -169,16 +170,16 @@ def as_it_answers(columns, joint, bent):
 
 
 def check_mass(plant, bent, unit):
-    """That sines moved all that swings move. Within play, or where friction holds the load, they move the motor alone, and a loop for
-    that swings as soon as the load goes along."""
+    """That sines moved all that swings move. Within play they move the motor alone, and a loop for that swings as soon as the load goes
+    along; sines that friction outweighs leave a joint that slides on one flank of its play."""
     share = bent.mass / plant.mass
     if 1 / MOST_OF_MASS <= share <= MOST_OF_MASS:
         return
     of = "N·m·s²/deg" if unit == "deg" else "N·s²/mm"
     raise frequency_response.Unmeasured(
-        f"sines move {bent.mass:.3g} {of}, and swings {plant.mass:.3g}: the sines do not show the joint's whole mass, as where they move a "
-        "motor within its play, or friction holds what is behind it; nothing is proposed. Sines of more effort reach farther: "
-        "--sweep-effort")
+        f"sines move {bent.mass:.3g} {of}, and swings {plant.mass:.3g}: the sines do not show the joint's whole mass, as where they throw a "
+        "motor to and fro within its play; nothing is proposed. Sines of a quarter of its friction, or less, leave it on one flank: "
+        f"--sweep-effort {OF_FRICTION * plant.friction:.2g}")
 
 
 def swept(given):
