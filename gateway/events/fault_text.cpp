@@ -188,7 +188,9 @@ std::string joint_cause(const ServoFault& fault, const std::string& at) {
     case ServoFault::Kind::StandsStill:
       return fmt::format(
           "{}: its position stands still for {:.3g} s, and it was to go {:.3g}; look for what blocks the axis or what "
-          "it met, whether its brake opens and its drive gives torque, and at the coupling of its encoder, then reset",
+          "it met, whether its brake opens and its drive gives torque, at the coupling of its encoder, and for "
+          "friction "
+          "that its loop is too weak to overcome and does not know of (`rmac tune --creep`), then reset",
           at, fault.bound, fault.value);
     case ServoFault::Kind::EncoderFrozen:
       return fmt::format(

@@ -59,7 +59,8 @@ Expected<std::shared_ptr<Clock>> clock_for(const Configuration& configuration) {
 Verification::Options verification_options(const Configuration& configuration) {
   return {.program = default_folders().verifier,
           .verdicts = configuration.state_folder / "verified",
-          .module_folders = configuration.module_folders};
+          .module_folders = configuration.module_folders,
+          .period_s = std::chrono::duration<double>(configuration.period).count()};
 }
 
 ServerOptions server_options(const Configuration& configuration) {

@@ -66,9 +66,14 @@ Verification::Subject Verification::beside(const fs::path& device_json) const {
   return subject;
 }
 
+std::string Verification::period() const {
+  return fmt::format("{}", options_.period_s);
+}
+
 std::string Verification::fingerprint(const Subject& subject, const sdk::DeviceObject& device) const {
   const ModuleLoader loader(subject.folders);
   ContentHash hash;
+  hash.add(period());
   if (!hash.add_file(options_.program) || !hash.add_file(subject.device_json)) return "";
   for (const std::string& name : modules_of(device)) {
     const auto file = loader.find_file("", name, ".so", "module");
@@ -93,7 +98,8 @@ Expected<verifier::Report> Verification::verify(const Subject& subject) const {
   if (!device) return tl::unexpected(device.error());
   // Before it runs: what changes meanwhile is not what passed.
   const std::string before = fingerprint(subject, *device);
-  std::vector<std::string> words{options_.program.string(), subject.device_json.string(), "--json"};
+  std::vector<std::string> words{options_.program.string(), subject.device_json.string(), "--json", "--period",
+                                 period()};
   for (const fs::path& folder : subject.folders) {
     words.emplace_back("--modules");
     words.push_back(folder.string());

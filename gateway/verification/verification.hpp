@@ -21,6 +21,7 @@ class Verification {
     std::filesystem::path verdicts;                     ///< folder for what passed; empty: nothing is remembered
     std::vector<std::filesystem::path> module_folders;  ///< searched after the mechanism's own
     std::chrono::seconds patience{600};                 ///< then the verifier is killed
+    double period_s = 0.001;                            ///< cycle of the servo loop that it is to run in
   };
 
   explicit Verification(Options options) : options_(std::move(options)) {}
@@ -47,8 +48,12 @@ class Verification {
   [[nodiscard]] Subject beside(const std::filesystem::path& device_json) const;
   [[nodiscard]] Expected<verifier::Report> verify(const Subject& subject) const;
   [[nodiscard]] Expected<> require(const Subject& subject) const;
-  /// Changes with the device database, with every module it names, and with the verifier; empty when a file is missing.
+  /// Changes with the device database, with every module it names, with the cycle's time, and with the verifier; empty
+  /// when a file is missing.
   [[nodiscard]] std::string fingerprint(const Subject& subject, const sdk::DeviceObject& device) const;
+
+  /// As the verifier is told it.
+  [[nodiscard]] std::string period() const;
 
   Options options_;
   std::atomic<bool> cancelled_{false};

@@ -4,19 +4,31 @@
 #include <utility>
 
 namespace rmac::verifier {
+namespace {
+
+/// Its simulated axes without the part that their bus may have under the tool: planned moves would go into it.
+sdk::DeviceObject without_part(sdk::DeviceObject device) {
+  std::erase_if(device.digital_control_interface.numbers, [](const auto& parameter) {
+    const std::string& name = parameter.first;
+    return name.compare(name.rfind('.') + 1, 8, "contact_") == 0;
+  });
+  return device;
+}
+
+}  // namespace
 
 tl::expected<std::unique_ptr<MachineRig>, CounterExample> MachineRig::assemble(const Task& task,
                                                                                const sdk::DeviceObject& device,
                                                                                bool virtual_mode, Watch& watch) {
   watch.step("assembling");
   auto loops =
-      gateway::ClosedLoops::assemble(device,
-                                     {.period_s = kPeriod_s,
+      gateway::ClosedLoops::assemble(without_part(device),
+                                     {.period_s = task.period_s,
                                       .virtual_mode = virtual_mode,
                                       .before_cycle = [&watch] { watch.step("a servo cycle on the axis models"); }},
                                      task.loader);
   if (!loops) return found("assembling", loops.error().message, -1, {});
-  return std::unique_ptr<MachineRig>(new MachineRig(std::move(*loops)));
+  return std::unique_ptr<MachineRig>(new MachineRig(std::move(*loops), task.period_s));
 }
 
 Checked MachineRig::power_up() {

@@ -24,6 +24,7 @@ struct Wishes {
   std::vector<std::string> module_folders;
   int samples = verifier::kSamples;
   std::uint64_t seed = 1;
+  double period_s = 0.001;
   bool json = false;
 };
 
@@ -40,9 +41,12 @@ Expected<verifier::Report> verify(const Wishes& wishes) {
 
   verifier::Report report{
       device->name, fs::absolute(file).lexically_normal().string(), wishes.samples, wishes.seed, {}};
-  const verifier::Task task{*device, database->bodies.chain,
-                            gateway::ModuleLoader(folders, gateway::ModuleLoader::Opens::Whichever), wishes.samples,
-                            wishes.seed};
+  const verifier::Task task{*device,
+                            database->bodies.chain,
+                            gateway::ModuleLoader(folders, gateway::ModuleLoader::Opens::Whichever),
+                            wishes.samples,
+                            wishes.seed,
+                            wishes.period_s};
   for (const verifier::Job& job : verifier::jobs_for(*device)) {
     // All modules together are run once each of them is fit for it.
     if (job.module.empty() && !report.passed()) continue;
@@ -79,6 +83,9 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 100'000'000))
       ->capture_default_str();
   app.add_option("--seed", wishes.seed, "of what is taken at random")->capture_default_str();
+  app.add_option("--period", wishes.period_s, "cycle of the servo loop, s (period_s in rmacd.json)")
+      ->check(CLI::Range(0.0001, 0.1))
+      ->capture_default_str();
   app.add_flag("--json", wishes.json, "print for programs");
   try {
     app.parse(argc, argv);

@@ -14,7 +14,6 @@
 namespace rmac::verifier {
 namespace {
 
-constexpr double kCycle_s = MachineRig::kPeriod_s;
 /// The part of a joint's following-error bound that may be left half a second after a move.
 constexpr double kRestShare = 0.2;
 
@@ -77,7 +76,11 @@ struct SteadyWay {
 class ServoLoopCheck {
  public:
   explicit ServoLoopCheck(MachineRig& rig)
-      : rig_(rig), device_(rig.mechanism().device), loop_(*rig.mechanism().loop), command_(rig.command()) {}
+      : rig_(rig),
+        cycle_s_(rig.period_s()),
+        device_(rig.mechanism().device),
+        loop_(*rig.mechanism().loop),
+        command_(rig.command()) {}
 
   Checked run() {
     if (auto fine = rig_.power_up(); !fine) return fine;
@@ -107,9 +110,9 @@ class ServoLoopCheck {
   }
 
   Checked go(std::size_t j, const gateway::LeastJerkWay& way) {
-    const auto cycles = static_cast<int>(std::ceil(way.time_s / kCycle_s));
+    const auto cycles = static_cast<int>(std::ceil(way.time_s / cycle_s_));
     for (int i = 1; i <= cycles; ++i) {
-      if (auto fine = follow(j, way.at(i * kCycle_s)); !fine) return fine;
+      if (auto fine = follow(j, way.at(i * cycle_s_)); !fine) return fine;
     }
     return {};
   }
@@ -122,11 +125,11 @@ class ServoLoopCheck {
 
   /// At a steady speed the effort hardly changes.
   Checked go_steadily(std::size_t j, const SteadyWay& way) {
-    const auto cycles = static_cast<int>(std::ceil(way.time_s() / kCycle_s));
+    const auto cycles = static_cast<int>(std::ceil(way.time_s() / cycle_s_));
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (int i = 1; i <= cycles; ++i) {
-      if (auto fine = follow(j, way.at(i * kCycle_s)); !fine) return fine;
-      if (!way.is_settled(i * kCycle_s)) continue;
+      if (auto fine = follow(j, way.at(i * cycle_s_)); !fine) return fine;
+      if (!way.is_settled(i * cycle_s_)) continue;
       least = std::min(least, rig_.report().effort[j]);
       most = std::max(most, rig_.report().effort[j]);
     }
@@ -143,7 +146,7 @@ class ServoLoopCheck {
     const sdk::Spindle& spindle = device_.spindles[i];
     const auto reached = [&] { return std::abs(rig_.report().spindle_rpm[i] - rpm) <= spindle.speed_tolerance_rpm; };
     command_.spindle_rpm[i] = rpm;
-    const auto cycles = static_cast<int>(std::ceil(spindle.speed_timeout_s / kCycle_s));
+    const auto cycles = static_cast<int>(std::ceil(spindle.speed_timeout_s / cycle_s_));
     for (int k = 0; k < cycles && (k == 0 || !reached()); ++k) {
       if (auto fine = rig_.cycle(); !fine) return fine;
     }
@@ -158,10 +161,10 @@ class ServoLoopCheck {
 
   /// A second, in whose second half every joint stands.
   Checked rest() {
-    constexpr int kSettle = 500, kWatched = 500;
-    for (int i = 0; i < kSettle + kWatched; ++i) {
+    const int settle = static_cast<int>(std::lround(0.5 / cycle_s_)), watched = settle;
+    for (int i = 0; i < settle + watched; ++i) {
       if (auto fine = rig_.cycle(); !fine) return fine;
-      for (std::size_t j = 0; i >= kSettle && j < loop_.joint_count_with_held(); ++j) {
+      for (std::size_t j = 0; i >= settle && j < loop_.joint_count_with_held(); ++j) {
         const sdk::Joint& joint = joint_of(j);
         const double off = std::abs(rig_.report().position[j] - rig_.report().position_set[j]);
         const double bound = kRestShare * joint.max_following_error;
@@ -176,6 +179,7 @@ class ServoLoopCheck {
   }
 
   MachineRig& rig_;
+  double cycle_s_;
   const sdk::DeviceObject& device_;
   const ServoLoop& loop_;
   ServoCommand& command_;

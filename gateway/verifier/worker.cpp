@@ -273,7 +273,7 @@ void check_driver_module(const Task& task, Watch& watch, ModuleReport& report, c
 
 void check_interface(const Task& task, Watch& watch, ModuleReport& report, const Tell& tell) {
   gateway::BusRegistry registry;
-  gateway::add_built_in_interfaces(registry, 0.001);
+  gateway::add_built_in_interfaces(registry, task.period_s);
   watch.step("loading");
   const auto& device = task.device;
   const bool control = report.module == device.digital_control_interface.name;

@@ -22,6 +22,7 @@ struct Task {
   gateway::ModuleLoader loader;
   int samples = kSamples;
   std::uint64_t seed = 1;
+  double period_s = 0.001;  ///< cycle of the servo loop that it is to run in
 };
 
 /// Checks one module in one role, in a process of its own: the module may crash it, hang it, or fill its memory. What

@@ -130,6 +130,45 @@ class Creep(unittest.TestCase):
                 joint.cogging = {}
                 self.assertEqual(self.find(joint)[1].harmonics, [])
 
+    def test_finds_what_comes_again_with_each_magnet_of_a_joint_without_friction(self):
+        """A linear motor on air: what it has twice for each pair of magnets is its cogging, and no guide's."""
+        for seed in range(FIRST, FIRST + SEEDS):
+            with self.subTest(seed=seed):
+                joint = CreepingJoint(seed)
+                joint.coulomb *= 1e-6
+                joint.cogging = {2: (0.08 * joint.rated, 1.0 + seed), 4: (0.02 * joint.rated, 2.0)}
+                _, found = self.find(joint)
+                told = {order: complex(cosine, -sine) for order, cosine, sine in found.harmonics}
+                for order, (size, phase) in joint.cogging.items():
+                    self.assertLess(abs(told.pop(order) - size * np.exp(1j * phase)), 0.1 * size, order)
+                self.assertLess(sum(map(abs, told.values())), 0.01 * joint.rated, told)
+                # What the laws with feedforward take: none of a Stribeck speed that nobody saw.
+                self.assertEqual(found.friction, creep.NO_FRICTION)
+
+    def test_takes_no_pull_that_differs_from_turn_to_turn_for_cogging(self):
+        """A cable that hangs on the table pulls by where it is, not by the motor's angle."""
+        joint = CreepingJoint(FIRST)
+        joint.cogging = {}
+        joint.force_of_motor = lambda place: 0.3 * joint.coulomb * math.sin(2 * math.pi * place / (3.3 * TURN))
+        self.assertEqual([order for order, _, _ in self.find(joint)[1].harmonics if order < creep.LOWEST_ORDER], [])
+
+    def test_tells_no_cogging_where_the_joint_gives_way(self):
+        """By what it answers, three and a half times as much effort would be needed for the same motion as of a rigid one: so near to where
+        the load swings alone, what is seen says nothing of the motor. What was taken away already stays."""
+        joint = CreepingJoint(FIRST)
+        order, (size, phase) = next(iter(joint.cogging.items()))
+        joint.cogging = {order: (size, phase)}
+        plant = model.Plant(joint.mass, joint.viscous, joint.coulomb, joint.load, 1.5 * PERIOD)
+        rigid = frequency_response.Model(PERIOD, plant.mass, plant.delay_s)
+        soft = frequency_response.Model(PERIOD, plant.mass, plant.delay_s)
+        soft.response = lambda frequency: rigid.response(frequency) / 3.5
+        records = [joint.run(strokes(2 * TURN, 3.5, 1)), joint.run(strokes(0.06 * TURN, 0.75, 4))]
+        for known in ([], [{"order": order, "cosine": 0.5 * size, "sine": 0.0}]):
+            head = {"joints": [{"unit": "mm"}], "actuators": [self.scale(joint, known)]}
+            _, found = creep.find(head, records, 0, plant, soft)
+            self.assertEqual(found.harmonics, [(order, 0.5 * size, 0.0)] if known else [])
+            self.assertEqual([each for each, _ in found.hidden], [order])
+
     def test_finds_friction_of_two_motors_that_turn_alike_and_tells_no_cogging(self):
         """A gantry: what the joint shows is the sum of what both motors do."""
         joint = CreepingJoint(FIRST)

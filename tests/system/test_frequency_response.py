@@ -12,6 +12,8 @@ from bending_joint import PERIOD, BendingJoint, ClosedLoop, strokes, swept_sine
 sys.path.insert(0, str(pathlib.Path(os.environ["RMAC_SOURCE"], "gateway/rmac/plots")))
 import frequency_response  # noqa: E402
 import loop_design  # noqa: E402
+import servo_model  # noqa: E402
+import tune  # noqa: E402
 
 SWEEP = dict(from_hz=20, to_hz=495, period_s=0.5, sweeps=7)
 FIRST_SEED, SEEDS = int(os.environ.get("RMAC_SEED", "1")), int(os.environ.get("RMAC_SEEDS", "12"))
@@ -28,17 +30,19 @@ def soft_gains(joint):
         softer *= 0.7
 
 
-def measured(joint, effort_per_mass=1000.0):
-    """The response of `joint` under soft gains, as the record of its strokes shows it."""
+def measured(joint, effort_per_mass=1000.0, cogging=lambda places: 0 * places):
+    """The response of `joint` under soft gains, as the record of its strokes shows it; `cogging`: N at these places, which act and are
+    no effort."""
     setpoints = list(strokes(20, 5))
     steady = [abs(speed) > 1e-6 and abs(change) * PERIOD <= 1e-3 * abs(speed) for _, speed, change in setpoints]
     sine = swept_sine(effort_per_mass * joint.mass, full_hz=70, **SWEEP)
     added = np.zeros(len(setpoints))
     for begin in np.flatnonzero(np.diff([0, *steady]) == 1):
         added[begin:begin + len(sine)] = sine
-    positions, efforts = joint.run([(where, speed) for where, speed, _ in setpoints],
-                                   soft_gains(joint), added)
     wanted = np.array(setpoints)
+    unseen = cogging(wanted[:, 0])
+    positions, efforts = joint.run([(where, speed) for where, speed, _ in setpoints], soft_gains(joint), added + unseen)
+    efforts = efforts - unseen
     columns = {"t_s": np.arange(len(wanted)) * PERIOD, "q1": wanted[:, 0], "qd1": wanted[:, 1], "qdd1": wanted[:, 2],
                "a1": positions, "effort1": efforts}
     return frequency_response.measure([columns], 1, SWEEP["period_s"], SWEEP["sweeps"], (20, 495))
@@ -90,6 +94,32 @@ class JointsThatBend(unittest.TestCase):
                 found = frequency_response.fit(measured(stiff), PERIOD)
                 self.assertAlmostEqual(found.mass / stiff.mass, 1, delta=0.05)
                 self.assertEqual(loop_design.design(found, 40).filters.notches, [])
+
+    def test_sines_that_move_a_motor_within_its_play_are_told_from_the_joint(self):
+        """The motor alone, which has 0.3 to 0.6 of the mass: the loop that suits it is not proposed for the joint."""
+        for seed, joint in self.joints[:4]:
+            with self.subTest(seed=seed, joint=joint):
+                alone = joint.elsewhere(5000 / joint.resonance_hz)
+                alone.motor, alone.load = 0.6 * joint.motor, 0.01 * joint.motor
+                plant = servo_model.Plant(joint.mass, joint.viscous, 40.0, 0.0, 0.0017)
+                with self.assertRaisesRegex(frequency_response.Unmeasured, "play.*--sweep-effort 10$"):
+                    tune.check_mass(plant, frequency_response.fit(measured(alone), PERIOD), "mm")
+                tune.check_mass(plant, self.found[seed], "mm")
+
+    def test_a_motor_that_cogs_hides_no_resonance(self):
+        """Twice as much as the sines have, every 8 mm of a stroke of 20, as a linear motor's magnets do: the loop, which is soft, lets the
+        joint drift by far more than the sines do."""
+        for seed, joint in self.joints[:6]:
+            wanted = as_samples_show_it(joint.resonance_hz)
+            if wanted > 470:
+                continue
+            with self.subTest(seed=seed, joint=joint):
+                size = 2000 * joint.mass
+                found = frequency_response.fit(
+                    measured(joint, cogging=lambda places, size=size: size * np.sin(2 * np.pi * places / 8.0)), PERIOD)
+                self.assertLess(found.misfit, 0.1)
+                nearest = min(found.resonances(), key=lambda mode: abs(mode[0] - wanted))
+                self.assertAlmostEqual(nearest[0] / wanted, 1, delta=0.01)
 
 
 class LinesOfOneMode(unittest.TestCase):

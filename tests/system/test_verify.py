@@ -7,7 +7,7 @@ import subprocess
 import unittest
 
 from appliance import BUILD, Appliance, line, run_to_rest
-from bending_mill import rigid
+from bending_mill import device_of, rigid
 
 FOLDER = "mill/3-axis/Bad"
 # What each defect of BadKinematics is refused for.
@@ -197,6 +197,34 @@ class Verify(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("DMACXY may go live", done.stdout)
         self.assertEqual(self.appliance.rmac("verify", "Nowhere").returncode, 1)
+
+    def test_loops_are_checked_at_the_cycle_that_they_are_to_run_in(self):
+        """Loops quicker than a cycle of 1 ms bears, and right for one of 0.25 ms; a verdict on the one is none on the other."""
+        with device_of(self.appliance) as device:
+            rigid(device)
+            for data in device["Joints"]:
+                data["Gains"] = [gain * factor for gain, factor in zip(data["Gains"], (8, 16, 3))]
+        folder = self.appliance.tree / "mill/3-axis/DMACXYZ"
+        slow, quick = self.verify(folder), self.verify(folder, "--period", "0.00025")
+        self.assertEqual((slow.returncode, quick.returncode, quick.stderr), (1, 0, ""))
+        self.assertIn("swings", slow.stderr)
+        verdicts = self.appliance.folder / "state/verified"
+        verdicts.mkdir(exist_ok=True)
+        at_4_khz = Appliance(own_verdicts=True, device_tree=str(self.appliance.tree), period_s=0.00025)
+        (at_4_khz.folder / "state/verified").symlink_to(verdicts)
+        with at_4_khz:
+            at_4_khz.operator("DMACXYZ")
+        self.assertEqual(len(list(verdicts.iterdir())), 1)
+        operator = self.appliance.client("operator")
+        operator.call("authority.acquire")
+        self.assertIn("swings", operator.refusal("Device.Load", Name="DMACXYZ").message)
+
+    def test_a_part_under_the_tool_is_in_nobodys_way(self):
+        """The simulated bus may have one; the moves that are planned know nothing of it, and loops are what is looked at."""
+        with device_of(self.appliance) as device:
+            device["DigitalControlInterface"]["Parameters"].update(contact_surface_mm=-10, contact_stiffness_n_mm=20000)
+        done = self.verify(self.appliance.tree / "mill/3-axis/DMACXYZ")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def verify(self, path, *words):
         return subprocess.run([BUILD / "bin/rmac", "verify", path, *words], stdin=subprocess.DEVNULL,

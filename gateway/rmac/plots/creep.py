@@ -18,11 +18,17 @@ from servo_model import Unidentifiable
 # Longer than an encoder's noise, shorter than a period of cogging at creep speed.
 WINDOW_S = 0.009
 ELASTIC = 0.3  # share of friction below which bristles only bend, as FeedforwardModel has it
-# Lower orders are the screw's and the guide's as well, and two turns do not tell them apart.
+# Lower orders may be the guide's, which do not come again in the next turn: those of the motor do, in both directions, within a share.
 LOWEST_ORDER = 6
+REPEATS = 0.25
 HIGHEST_ORDER = 240
 MOST_HARMONICS = 6
 LEAST_SHARE = 0.001  # of the rated torque; less is not worth a harmonic
+# Of what a rigid joint shows of a harmonic: where a soft one shows more than so many times as much, or as little, what it shows says
+# more about how it bends and sticks than about the motor.
+MOST_BENT = 1.5
+# Presliding, breakaway and Stribeck's speed as the laws with feedforward take them.
+SHAPES = ((1e-6, 1.0), (1.0, 3.0), (0.001, 100.0))
 
 
 @dataclass
@@ -47,7 +53,7 @@ class Motor:
 
 @dataclass
 class Friction:
-    """Of a joint that slides, and how it builds up: None where none is seen."""
+    """Of a joint that slides, and how it builds up."""
 
     sliding: float
     presliding: float
@@ -55,14 +61,19 @@ class Friction:
     stribeck_speed: float
 
 
+NO_FRICTION = Friction(0.0, 0.0, 1.0, 1.0)
+
+
 @dataclass
 class Creep:
-    """What was found. `explained`: of what the joint of the swings leaves open in these records."""
+    """What was found. `explained`: of what the joint of the swings leaves open in these records. `hidden`: harmonics that are there,
+    and of which the joint shows too little, or too much, to tell them."""
 
     friction: Friction
     load: float
     harmonics: list  # (order, cosine, sine) of the motor's own torque, N·m
     explained: float
+    hidden: list  # (order, Hz at which it passed)
 
 
 def unwrapped(counts):
@@ -162,13 +173,17 @@ def solve(strokes, shape, orders):
     return found, wanted - matrix @ found, wanted
 
 
+def stretches_of(turning):
+    """Rows of each stretch at a steady speed."""
+    used = np.flatnonzero(turning.steady)
+    return [part for part in np.split(used, np.flatnonzero(np.diff(used) > 1) + 1) if len(part) > 200]
+
+
 def spectrum(turning, left, orders):
     """Amplitude of each order in what is left of the steady stretches: what changes slowly is taken out of each, and it is
     faded in and out, so that a strong order does not hide a weak one."""
-    used = np.flatnonzero(turning.steady)
-    stretches = [part for part in np.split(used, np.flatnonzero(np.diff(used) > 1) + 1) if len(part) > 200]
     total, weight = np.zeros(len(orders), dtype=complex), 0.0
-    for part in stretches:
+    for part in stretches_of(turning):
         angle, values, fade = turning.angle[part], left[part], np.hanning(len(part))
         values = values - np.polyval(np.polyfit(angle, values, 3), angle)
         total += np.exp(-1j * np.outer(orders, angle)) @ (values * fade)
@@ -176,9 +191,31 @@ def spectrum(turning, left, orders):
     return 2 * np.abs(total) / max(weight, 1e-9)
 
 
+def low_orders(turning, left, least):
+    """Those below LOWEST_ORDER that come again, in each turn and both directions, in what is left of the steady stretches."""
+    low = range(1, LOWEST_ORDER)
+    told = []
+    for part in stretches_of(turning):
+        begin = turning.angle[part[0]]
+        for one in np.array_split(part, max(1, round(np.ptp(turning.angle[part]) / (2 * np.pi)))):
+            waves = [wave(order * turning.angle[one]) for order in low for wave in (np.cos, np.sin)]
+            columns = np.column_stack([np.ones(len(one)), turning.angle[one] - begin, *waves])
+            found, *_ = np.linalg.lstsq(columns, left[one], rcond=None)
+            told.append(found[2::2] + 1j * found[3::2])
+    if len(told) < 4:
+        return []
+    mean = np.mean(told, axis=0)
+    again = np.abs(np.array(told) - mean).max(axis=0) <= REPEATS * np.abs(mean)
+    return [order for order, size, repeats in zip(low, np.abs(mean), again) if repeats and size >= least]
+
+
 def orders_of(turning, shape, known, least):
     """Orders of cogging in what strokes at a steady speed leave, strongest first."""
     orders = list(known)
+    found, _, _ = solve([turning], shape, orders)
+    columns = [turning.friction(*shape), np.ones(len(turning.left)), *turning.harmonics(orders)]
+    low = low_orders(turning, turning.left - np.column_stack(columns) @ found, least)
+    orders += [order for order in low if order not in orders]
     per_row = np.quantile(np.abs(np.diff(turning.angle[turning.steady])), 0.9)
     tried = np.arange(LOWEST_ORDER, int(min(HIGHEST_ORDER, np.pi / (3 * per_row))) + 1)
     while len(orders) < MOST_HARMONICS and len(tried):
@@ -210,7 +247,8 @@ def find(head, records, joint, plant, joint_model):
 
     def shape_of(logarithms):
         presliding, beyond, stribeck = logarithms
-        return (turn * np.exp(presliding), 1 + np.exp(beyond), np.median(np.abs(turning.speed)) * np.exp(stribeck))
+        shape = turn * np.exp(presliding), 1 + np.exp(beyond), np.median(np.abs(turning.speed)) * np.exp(stribeck)
+        return tuple(float(np.clip(value, *bounds)) for value, bounds in zip(shape, SHAPES))
 
     start = np.log([0.001, 0.1, 0.5])
     known = list(motor.known)
@@ -226,16 +264,23 @@ def find(head, records, joint, plant, joint_model):
         orders = orders_of(turning, shape_of(best), known, least)
     shape = shape_of(best)
     found, left, wanted = solve([turning, short], shape, orders)
-    if not found[0] > 0:
+    if not found[0] > 0 and not orders:
         raise Unidentifiable("the strokes show no friction; give more --travel, or leave out --creep")
     passing = float(np.median(np.abs(turning.speed[turning.steady]))) / turn  # turns a second
-    amplitudes = [motor.torque_of(-value, unit) * stiffer(joint_model, plant, orders[i // 2] * passing)
-                  for i, value in enumerate(found[2:])]
-    left_over = {order: complex(amplitudes[2 * i], amplitudes[2 * i + 1]) for i, order in enumerate(orders)}
+    # Low ones pass so slowly that the loop's effort shows them whole.
+    bent_by = {order: 1.0 if order < LOWEST_ORDER else stiffer(joint_model, plant, order * passing) for order in orders}
+    amplitudes = [motor.torque_of(-value, unit) for value in found[2:]]
+    left_over = {order: bent_by[order] * complex(amplitudes[2 * i], amplitudes[2 * i + 1]) for i, order in enumerate(orders)}
+    hidden = [order for order, share in bent_by.items() if not 1 / MOST_BENT <= share <= MOST_BENT]
+    # Of what is above noise as it is seen and as it would be told.
+    seen = {order: abs(left_over.pop(order)) / max(1.0, bent_by[order]) for order in hidden}
+    hidden = [order for order, size in seen.items() if size > LEAST_SHARE * motor.rated_torque]
     if no_cogging(motor):
         left_over = {}
-    whole = {order: size + motor.known.get(order, 0) for order, size in left_over.items()}
+    friction = Friction(float(found[0]), *shape) if found[0] > least else NO_FRICTION
+    whole = {**motor.known, **{order: size + motor.known.get(order, 0) for order, size in left_over.items()}}
     harmonics = [(order, size.real, size.imag) for order, size in whole.items()
                  if abs(size) > LEAST_SHARE * motor.rated_torque]
-    return motor, Creep(Friction(float(found[0]), *(float(value) for value in shape)), float(found[1]), harmonics,
-                        1 - float(np.mean(left ** 2) / np.mean((wanted - wanted.mean()) ** 2)))
+    return motor, Creep(friction, float(found[1]), harmonics,
+                        1 - float(np.mean(left ** 2) / np.mean((wanted - wanted.mean()) ** 2)),
+                        [] if no_cogging(motor) else [(order, order * passing) for order in hidden])

@@ -149,26 +149,30 @@ def sines_of(columns, joint, sweep_s, sweeps):
 
 
 def measure(records, joint, sweep_s, sweeps, band):
-    """The response of joint `joint` (from 1) in the columns of these records together, over `band` (Hz)."""
+    """The response of joint `joint` (from 1) in the columns of these records together, over `band` (Hz). Pairs of sines fade in and
+    out: what drifts meanwhile, as a joint that cogs or rings in front of a soft loop, would be in every line otherwise."""
     period = period_of(records[0])
     half = int(round(sweep_s / period))
-    answers, efforts = [], []
-    for columns in records:
-        for part in sines_of(columns, joint, sweep_s, sweeps):
-            answers.append(np.fft.rfft(_level(columns[f"a{joint}"][part] - columns[f"q{joint}"][part])))
-            efforts.append(np.fft.rfft(_level(columns[f"effort{joint}"][part])))
-    if len(answers) < 2:
+    pairs = [[_level(values[part]) for values in (columns[f"a{joint}"] - columns[f"q{joint}"], columns[f"effort{joint}"])]
+             for columns in records for part in sines_of(columns, joint, sweep_s, sweeps)]
+    if len(pairs) < 2:
         raise Unmeasured("the joint was at a steady speed for too short a time; give it more travel")
-    answers, efforts = np.array(answers), np.array(efforts)
+    frequency = np.fft.rfftfreq(2 * half, period)
+    odd = np.arange(1, len(frequency) - 1, 2)
+    odd = odd[(frequency[odd] >= band[0]) & (frequency[odd] <= band[1])]
+    # The window of Hann adds to an odd line its neighbours, which are even, and hold no answer.
+    lines = np.fft.rfft(np.array(pairs) * np.hanning(2 * half + 1)[:-1])[:, :, odd]
+    return _answer(lines, frequency[odd])
+
+
+def _answer(lines, frequency):
+    """Of lines of position and effort, pair by pair."""
+    answers, efforts = lines[:, 0], lines[:, 1]
     effort = efforts.mean(axis=0)
     value = answers.mean(axis=0) / effort
     # Noise gets into the effort, too, by the loop: what counts is what no effort explains.
     unexplained = np.var(answers - value * efforts, axis=0, ddof=1) / len(answers)
-    spread = np.sqrt(unexplained) / np.abs(value * effort)
-    frequency = np.fft.rfftfreq(2 * half, period)
-    odd = np.arange(1, len(frequency) - 1, 2)
-    odd = odd[(frequency[odd] >= band[0]) & (frequency[odd] <= band[1])]
-    return Response(frequency[odd], value[odd], spread[odd])
+    return Response(frequency, value, np.sqrt(unexplained) / np.abs(value * effort))
 
 
 def _level(values):

@@ -21,6 +21,9 @@ import servo_model as model
 
 # Further off than this (rms of the logarithm of measured over model), the model is not the joint's.
 WORST_MISFIT = 0.4
+# Times that what sines move may be lighter or heavier than what swings move: more, and they are not one joint.
+MOST_OF_MASS = 1.6
+OF_FRICTION = 0.25  # an effort that does not throw a sliding joint off its flank
 # Phase margins in degrees: below the first a loop rings from one sine into the next; the second is of one that does not.
 LEAST_TO_SWEEP = 5.0
 SETTLES = 45.0
@@ -166,6 +169,19 @@ def as_it_answers(columns, joint, bent):
                           delay=bent.delay_s + bent.lag_s, window_s=window)
 
 
+def check_mass(plant, bent, unit):
+    """That sines moved all that swings move. Within play they move the motor alone, and a loop for that swings as soon as the load goes
+    along; sines that friction outweighs leave a joint that slides on one flank of its play."""
+    share = bent.mass / plant.mass
+    if 1 / MOST_OF_MASS <= share <= MOST_OF_MASS:
+        return
+    of = "N·m·s²/deg" if unit == "deg" else "N·s²/mm"
+    raise frequency_response.Unmeasured(
+        f"sines move {bent.mass:.3g} {of}, and swings {plant.mass:.3g}: the sines do not show the joint's whole mass, as where they throw a "
+        "motor to and fro within its play; nothing is proposed. Sines of a quarter of its friction, or less, leave it on one flank: "
+        f"--sweep-effort {OF_FRICTION * plant.friction:.2g}")
+
+
 def swept(given):
     """Columns of each record of sines."""
     return [model.read_record(file, begin)[1] for file, begin in zip(given.sweep, given.sweep_begin)]
@@ -206,7 +222,8 @@ def crept(given, head, plant, bent, lead):
             "motor": None if creep.no_cogging(motor) else {
                 "actuator": motor.actuators[0], "of": len(head["actuators"]), "rated_torque": motor.rated_torque,
                 "cogging_in_force": as_device_json(head["actuators"][motor.actuators[0]]["cogging"]),
-                "cogging": {"Lead": rounded(plant.delay_s), "Harmonics": harmonics}},
+                "cogging": {"Lead": rounded(plant.delay_s), "Harmonics": harmonics},
+                "hidden": [{"order": order, "hz": hz} for order, hz in found.hidden]},
             "no_cogging": creep.no_cogging(motor)}
 
 
@@ -221,6 +238,7 @@ def main():
         bent, response = measured_joint(given, plant)
         if response is not None:
             plant = as_it_answers(columns, given.joint, bent)
+            check_mass(plant, bent, joint["unit"])
         proposed = design.design(bent, given.margin, given.bandwidth)
         lead = plant.delay_s + proposed.filters.delay_s()
         creeping = crept(given, head, plant, bent, lead)

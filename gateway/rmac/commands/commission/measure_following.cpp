@@ -119,7 +119,8 @@ Result<> measure_following(Connection& connection, FollowingOptions options, boo
 void add_measure_following(Command& rmac) {
   const auto options = std::make_shared<FollowingOptions>();
   Command follow = rmac.add("measure-following",
-                            "go round a circle from where the tool stands (upwards in Y) and draw what a ballbar would "
+                            "go round a circle from where the tool stands, its lowest place in Y, and stop at its "
+                            "highest; draw what a ballbar would "
                             "(ISO 230-4)");
   follow.option("--radius", &options->radius_mm, "mm").within(0.1, 10000.0).shows_default();
   follow.option("--feed", &options->feed_mm_min, "mm/min; the machine's largest unless given").positive();

@@ -1,6 +1,7 @@
 #include "gateway/rmac/commands/commission/tuning_text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <vector>
@@ -14,6 +15,10 @@ namespace {
 
 using Json = nlohmann::json;
 
+/// Where less of creeping is explained, the joint still sticks under what was found: belts of 45 and 58 Hz had 96 and
+/// 98 %, screws 99.
+constexpr double kUnderstood_percent = 98;
+
 void print_filters(const Json& filters) {
   for (const Json& notch : filters["Resonances"]) {
     fmt::print("  notch at {:.1f} Hz, damping {:.3g}, width {:.3g}\n", notch["Frequency"].get<double>(),
@@ -26,11 +31,15 @@ void print_filters(const Json& filters) {
 void print_creep(const Json& found, const char* way, const char* effort) {
   const Json &creep = found["creep"], &motor = creep["motor"], &parameters = creep["parameters"];
   const auto number = [&](const char* key) { return parameters[key][0].get<double>(); };
-  fmt::print(
-      "friction slides at {:.3g} {}, builds up over {:.3g} {} and breaks away at {:.2f} times that, which is gone "
-      "at {:.2g} {}/s\n",
-      creep["friction"].get<double>(), effort, number("presliding"), way, number("breakaway"), number("stribeck_speed"),
-      way);
+  if (creep["friction"] == 0) {
+    fmt::print("friction: none\n");
+  } else {
+    fmt::print(
+        "friction slides at {:.3g} {}, builds up over {:.3g} {} and breaks away at {:.2f} times that, which is gone "
+        "at {:.2g} {}/s\n",
+        creep["friction"].get<double>(), effort, number("presliding"), way, number("breakaway"),
+        number("stribeck_speed"), way);
+  }
   if (motor.is_null()) fmt::print("cogging is not told: {}\n", creep["no_cogging"].get<std::string>());
   const Json harmonics = motor.is_null() ? Json::array() : motor["cogging"]["Harmonics"];
   for (const Json& one : harmonics) {
@@ -38,8 +47,25 @@ void print_creep(const Json& found, const char* way, const char* effort) {
     fmt::print("cogging of {} periods a turn: {:.3g} N·m, {:.2f} % of the rated torque\n", one["Order"].get<int>(),
                size, 100 * size / motor["rated_torque"].get<double>());
   }
-  if (!motor.is_null() && harmonics.empty()) fmt::print("cogging: none\n");
-  fmt::print("the model explains {:.1f} % of what creeping takes\n", 100 * creep["explained"].get<double>());
+  const Json hidden = motor.is_null() ? Json::array() : motor["hidden"];
+  if (!hidden.empty()) {
+    std::vector<std::string> orders, places;
+    for (const Json& one : hidden) {
+      orders.push_back(fmt::format("{}", one["order"].get<int>()));
+      places.push_back(fmt::format("{:.3g}", one["hz"].get<double>()));
+    }
+    fmt::print(
+        "cogging of {} periods a turn is not told: it passed at {} Hz, where the joint gives way so that it does not "
+        "show "
+        "how much there is\n",
+        fmt::join(orders, ", "), fmt::join(places, ", "));
+  }
+  if (!motor.is_null() && harmonics.empty() && hidden.empty()) fmt::print("cogging: none\n");
+  const double explained = 100 * creep["explained"].get<double>();
+  fmt::print("the model explains {:.1f} % of what creeping takes{}\n", explained,
+             explained < kUnderstood_percent ? ": friction is something else here, as behind a soft belt or play; see "
+                                               "what `rmac measure-following` shows before you keep it"
+                                             : "");
 }
 
 }  // namespace

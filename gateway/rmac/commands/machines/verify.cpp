@@ -12,8 +12,9 @@ namespace {
 namespace fs = std::filesystem;
 
 struct VerifyOptions {
-  std::string machine;   ///< its name, or the path of its folder or of its device.json
-  fs::path device_tree;  ///< with a path; empty: the installation's
+  std::string machine;      ///< its name, or the path of its folder or of its device.json
+  fs::path device_tree;     ///< with a path; empty: the installation's
+  double period_s = 0.001;  ///< with a path
 };
 
 Result<> show(const verifier::Report& report, bool json) {
@@ -23,10 +24,11 @@ Result<> show(const verifier::Report& report, bool json) {
 }
 
 /// Modules that are not beside the file are looked for among the shared ones of the device tree.
-Result<> verify_files(const std::string& path, const fs::path& device_tree, bool json) {
+Result<> verify_files(const std::string& path, const fs::path& device_tree, double period_s, bool json) {
   const auto folders = gateway::default_folders();
   const fs::path modules = (device_tree.empty() ? folders.device_tree : device_tree) / "modules";
-  const gateway::Verification verification({.program = folders.verifier, .verdicts = {}, .module_folders = {modules}});
+  const gateway::Verification verification(
+      {.program = folders.verifier, .verdicts = {}, .module_folders = {modules}, .period_s = period_s});
   const auto report = gateway::find_device_json(path, folders.device_tree).and_then([&](const fs::path& file) {
     return verification.verify(file);
   });
@@ -52,9 +54,12 @@ void add_verify(Command& rmac) {
       .required();
   verify.option("--device-tree", &options->device_tree,
                 "with a path: the tree whose shared modules it may name; the installation's unless given");
+  verify.option("--period", &options->period_s, "with a path: cycle of the servo loop, s (period_s in rmacd.json)")
+      .within(0.0001, 0.1)
+      .shows_default();
   verify.does([options](Call& call) {
     if (gateway::is_path_of_machine(options->machine))
-      return verify_files(options->machine, options->device_tree, call.json());
+      return verify_files(options->machine, options->device_tree, options->period_s, call.json());
     return call.appliance().and_then(
         [&](Connection* appliance) { return verify_machine(*appliance, options->machine, call.json()); });
   });

@@ -63,6 +63,7 @@ TEST_F(FaultText, SaysOfALoopWhatIsWrongWithIt) {
   EXPECT_THAT(text(of_joint(ServoFault::Kind::StandsStill, 1, 0.02)),
               HasSubstr("joint 1 (Y): its position stands still for 0.02 s, and it was to go 1; look for what "
                         "blocks the axis"));
+  EXPECT_THAT(text(of_joint(ServoFault::Kind::StandsStill, 1, 0.02)), HasSubstr("friction that its loop is too weak"));
   EXPECT_THAT(
       text(of_joint(ServoFault::Kind::EncoderFrozen, 0.02, 40)),
       HasSubstr("joint 1 (Y): its encoder tells the same to the last digit for 0.02 s, while the effort changed "
