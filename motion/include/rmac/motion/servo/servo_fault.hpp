@@ -33,10 +33,10 @@ struct ServoFault {
     StandsStill,     ///< a joint is to move, and its position stays; value: the way that it was to go (mm or deg),
                      ///< bound: for how many seconds it stands
     EncoderFrozen,   ///< an encoder of a joint tells the same to the last digit; value: for how many seconds, bound: by
-                    ///< how much the effort changed meanwhile (N, N·m)
-    Skewed,       ///< motors of one joint went apart, and this one lags; value: by how far they are (mm or deg of
-                  ///< the joint), bound: what is allowed
-    EncoderJump,  ///< value: the jump, bound: what motion can explain within a cycle (mm or deg)
+                     ///< how much the effort changed meanwhile (N, N·m)
+    Skewed,          ///< motors of one joint went apart, and this one lags; value: by how far they are (mm or deg of
+                     ///< the joint), bound: what is allowed
+    EncoderJump,     ///< value: the jump, bound: what motion can explain within a cycle (mm or deg)
     Displaced,    ///< a joint is not where it was left, or not where it would be sent; value: how far it is from there,
                   ///< bound: what is allowed (mm or deg)
     SensorLost,   ///< a joint's force sensor gives no valid value, or a drive reports its encoder gone
