@@ -20,6 +20,11 @@ void append_words(const std::array<T, kMaxJoints>& words, std::size_t count, std
   for (std::size_t i = 0; i < count; ++i) fmt::format_to(std::back_inserter(out), ",{}", words[i]);
 }
 
+/// Some of its motors move a joint side by side.
+bool has_gantry(const CycleSample& sample) {
+  return sample.actuator_count > sample.joint_count_with_held;
+}
+
 void append_header(const CycleSample& sample, std::string& out) {
   const std::size_t joints = sample.joint_count_with_held;
   const std::size_t drives = sample.actuator_count;
@@ -27,6 +32,7 @@ void append_header(const CycleSample& sample, std::string& out) {
   for (const char* quantity : {"ad", "effort", "force"}) append_columns(quantity, joints, out);
   if (sample.truth) append_columns("truth", joints, out);
   for (const char* word : {"torque_permille", "counts", "statusword", "error_code"}) append_columns(word, drives, out);
+  if (has_gantry(sample)) append_columns("ahead", drives, out);
   append_columns("rpm", sample.spindle_rpm.size(), out);
   out +=
       ",feed_actual_mm_s,cycle,state,servo_state,fault,fault_value,fault_bound,inputs,outputs,deadline_misses,"
@@ -54,6 +60,7 @@ void append_row(const CycleSample& sample, std::string& out) {
   append_words(sample.counts, drives, out);
   append_words(sample.statusword, drives, out);
   append_words(sample.error_code, drives, out);
+  if (has_gantry(sample)) append_numbers(std::span(sample.ahead).first(drives), out);
   append_numbers(sample.spindle_rpm, out);
   const ServoFault& fault = sample.fault;
   fmt::format_to(std::back_inserter(out), ",{},{},{},{},{},{},{},{},{},{},{},{}\n", sample.feed_actual_mm_s,

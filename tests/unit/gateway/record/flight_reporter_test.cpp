@@ -37,6 +37,7 @@ class FlightReporterTest : public testing::Test {
       sample.joint_count = 1;
       sample.joint_count_with_held = 2;
       sample.actuator_count = actuators;
+      sample.ahead = {0.25, -0.25};
       sample.statusword = {0x27, 0x08, 0x40};
       history_.add(sample);
     }
@@ -83,6 +84,8 @@ TEST_F(FlightReporterTest, RecordsBothMotorsOfAGantryAndDescribesHeldJointsLast)
   const std::string text = text_of(*name);
   EXPECT_THAT(text, HasSubstr(",statusword1,statusword2,statusword3,error_code1,"));
   EXPECT_THAT(text, HasSubstr(",39,8,64,"));
+  EXPECT_THAT(text, HasSubstr(",error_code3,ahead1,ahead2,ahead3,rpm1,"));
+  EXPECT_THAT(text, HasSubstr(",0.25,-0.25,0,"));
   const auto head = nlohmann::json::parse(text.substr(0, text.find('\n')));
   EXPECT_EQ(head["mechanism"], "Gantry");
   EXPECT_EQ(head["joints"][0]["name"], "X");
