@@ -152,6 +152,20 @@ class Creep(unittest.TestCase):
         joint.force_of_motor = lambda place: 0.3 * joint.coulomb * math.sin(2 * math.pi * place / (3.3 * TURN))
         self.assertEqual([order for order, _, _ in self.find(joint)[1].harmonics if order < creep.LOWEST_ORDER], [])
 
+    def test_refuses_what_it_does_not_understand(self):
+        """A turn alone does not tell what comes again in each; and swings that took friction for something else, or strokes."""
+        joint = CreepingJoint(FIRST)
+        joint.coulomb *= 1e-6
+        joint.cogging = {2: (0.08 * joint.rated, 1.0), 4: (0.02 * joint.rated, 2.0)}
+        records = [joint.run(strokes(TURN, 1.75, 1)), joint.run(strokes(0.06 * TURN, 0.75, 4))]
+        with self.assertRaisesRegex(model.Unidentifiable, "explains .* more --travel, of two turns of the motor or more"):
+            self.found_in(records, joint, [self.scale(joint)])
+        records[0] = joint.run(strokes(2 * TURN, 3.5, 1))
+        self.found_in(records, joint, [self.scale(joint)])
+        joint.coulomb = 0.3 * joint.rated * 2 * math.pi * 1000 / TURN
+        with self.assertRaisesRegex(model.Unidentifiable, "the strokes show no friction, and the swings"):
+            self.found_in(records, joint, [self.scale(joint)])
+
     def test_tells_no_cogging_where_the_joint_gives_way(self):
         """By what it answers, three and a half times as much effort would be needed for the same motion as of a rigid one: so near to where
         the load swings alone, what is seen says nothing of the motor. What was taken away already stays."""

@@ -1,8 +1,10 @@
 """What rmac tune's programs find of a joint that bends, and what they propose for it, held against the joint itself."""
 
+import dataclasses
 import os
 import pathlib
 import sys
+import types
 import unittest
 
 import numpy as np
@@ -96,15 +98,25 @@ class JointsThatBend(unittest.TestCase):
                 self.assertEqual(loop_design.design(found, 40).filters.notches, [])
 
     def test_sines_that_move_a_motor_within_its_play_are_told_from_the_joint(self):
-        """The motor alone, which has 0.3 to 0.6 of the mass: the loop that suits it is not proposed for the joint."""
+        """The motor alone: the loop that suits it is not proposed for the joint. Nor that for a joint which is heavier than what swung."""
+        sweep = types.SimpleNamespace(sweep_effort=20.0, from_hz=20.0)
         for seed, joint in self.joints[:4]:
             with self.subTest(seed=seed, joint=joint):
                 alone = joint.elsewhere(5000 / joint.resonance_hz)
                 alone.motor, alone.load = 0.6 * joint.motor, 0.01 * joint.motor
                 plant = servo_model.Plant(joint.mass, joint.viscous, 40.0, 0.0, 0.0017)
-                with self.assertRaisesRegex(frequency_response.Unmeasured, "play.*--sweep-effort 10$"):
-                    tune.check_mass(plant, frequency_response.fit(measured(alone), PERIOD), "mm")
-                tune.check_mass(plant, self.found[seed], "mm")
+                for motor in (0.6 * joint.motor, 0.78 * joint.mass):
+                    alone.motor = motor
+                    with self.assertRaisesRegex(frequency_response.Unheard, "play.*near 20 Hz or below.*--sweep-effort 10$"):
+                        tune.check_mass(plant, frequency_response.fit(measured(alone), PERIOD), "mm", sweep)
+                for friction in (0.0, 400.0):  # sines of a quarter of it were none, or more than those that were
+                    other = dataclasses.replace(plant, friction=friction)
+                    with self.assertRaisesRegex(frequency_response.Unheard, "nothing is proposed$"):
+                        tune.check_mass(other, frequency_response.fit(measured(alone), PERIOD), "mm", sweep)
+                heavier = dataclasses.replace(plant, mass=joint.mass / 1.8)
+                with self.assertRaisesRegex(frequency_response.Unheard, "more --travel$"):
+                    tune.check_mass(heavier, self.found[seed], "mm", sweep)
+                tune.check_mass(plant, self.found[seed], "mm", sweep)
 
     def test_a_motor_that_cogs_hides_no_resonance(self):
         """Twice as much as the sines have, every 8 mm of a stroke of 20, as a linear motor's magnets do: the loop, which is soft, lets the

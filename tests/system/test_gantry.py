@@ -30,12 +30,15 @@ class GantryTest(unittest.TestCase):
         for number, (start, end) in enumerate(zip(PLACES, PLACES[1:]), 1):
             operator.call("RMAC_CAM.MoveAlongLine", **line(start, end, number))
         operator.call("RMAC_CAM.CycleStart", Mode="AUTOMATIC")
-        ahead = []
+        samples = []
         while (state := operator.state())["moves_in_buffer"] > 0 or state["moving"]:
             self.assertNotEqual(state["state"], "Faulted", state["last_stop"])
-            ahead += [sample["ahead"] for sample in watcher.wait_note("drives")["samples"]]
+            samples += watcher.wait_note("drives")["samples"]
+        while not samples or samples[-1]["cycle"] < state["cycle"]:
+            samples += watcher.wait_note("drives")["samples"]
+        ahead = [sample["ahead"] for sample in samples]
         self.assertAlmostEqual(state["joints"][0], PLACES[-1][0], delta=0.05)
-        self.assertGreater(len(ahead), 5000)
+        self.assertGreater(len(ahead), 1000)
         self.assertTrue(all(one[2:] == [0, 0] for one in ahead), "the others move their joints alone")
         apart = max(abs(one[0] - one[1]) for one in ahead)
         self.assertLess(apart, 0.1)

@@ -197,6 +197,9 @@ class Verify(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("DMACXY may go live", done.stdout)
         self.assertEqual(self.appliance.rmac("verify", "Nowhere").returncode, 1)
+        refused = self.appliance.rmac("verify", "DMACXY", "--period", "0.00025")
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("an appliance verifies at its own cycle", refused.stderr)
 
     def test_loops_are_checked_at_the_cycle_that_they_are_to_run_in(self):
         """Loops quicker than a cycle of 1 ms bears, and right for one of 0.25 ms; a verdict on the one is none on the other."""

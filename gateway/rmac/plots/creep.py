@@ -27,6 +27,10 @@ LEAST_SHARE = 0.001  # of the rated torque; less is not worth a harmonic
 # Of what a rigid joint shows of a harmonic: where a soft one shows more than so many times as much, or as little, what it shows says
 # more about how it bends and sticks than about the motor.
 MOST_BENT = 1.5
+LEAST_EXPLAINED = 0.5  # of what creeping takes: less, and what was found is not what the joint does
+# Of the rated torque: swings of a motor that cogs show so much friction where there is none.
+MOST_FALSE_FRICTION = 0.1
+MOST_OF_MAP = 16  # harmonics, as device.json takes them
 # Presliding, breakaway and Stribeck's speed as the laws with feedforward take them.
 SHAPES = ((1e-6, 1.0), (1.0, 3.0), (0.001, 100.0))
 
@@ -218,7 +222,8 @@ def orders_of(turning, shape, known, least):
     orders += [order for order in low if order not in orders]
     per_row = np.quantile(np.abs(np.diff(turning.angle[turning.steady])), 0.9)
     tried = np.arange(LOWEST_ORDER, int(min(HIGHEST_ORDER, np.pi / (3 * per_row))) + 1)
-    while len(orders) < MOST_HARMONICS and len(tried):
+    most = max(MOST_HARMONICS, len(orders)) if not low else len(orders) + MOST_HARMONICS
+    while len(orders) < most and len(tried):
         found, _, _ = solve([turning], shape, orders)
         columns = [turning.friction(*shape), np.ones(len(turning.left)), *turning.harmonics(orders)]
         sizes = spectrum(turning, turning.left - np.column_stack(columns) @ found, tried)
@@ -231,7 +236,7 @@ def orders_of(turning, shape, known, least):
 
 def stiffer(joint_model, plant, hz):
     """How much more effort a rigid joint takes for the same motion: the harmonics are found as of one, and the joint is `joint_model`."""
-    rigid = type(joint_model)(joint_model.period, plant.mass, plant.delay_s)
+    rigid = type(joint_model)(joint_model.period, joint_model.mass, plant.delay_s)
     return abs(rigid.response(hz)) / abs(joint_model.response(hz))
 
 
@@ -277,10 +282,17 @@ def find(head, records, joint, plant, joint_model):
     hidden = [order for order, size in seen.items() if size > LEAST_SHARE * motor.rated_torque]
     if no_cogging(motor):
         left_over = {}
+    rated = least / LEAST_SHARE
+    if not found[0] > least and plant.friction > MOST_FALSE_FRICTION * rated:
+        raise Unidentifiable(f"the strokes show no friction, and the swings {plant.friction:.3g}; give more --travel, or leave out --creep")
     friction = Friction(float(found[0]), *shape) if found[0] > least else NO_FRICTION
     whole = {**motor.known, **{order: size + motor.known.get(order, 0) for order, size in left_over.items()}}
     harmonics = [(order, size.real, size.imag) for order, size in whole.items()
                  if abs(size) > LEAST_SHARE * motor.rated_torque]
-    return motor, Creep(friction, float(found[1]), harmonics,
-                        1 - float(np.mean(left ** 2) / np.mean((wanted - wanted.mean()) ** 2)),
+    harmonics = sorted(harmonics, key=lambda one: -math.hypot(*one[1:]))[:MOST_OF_MAP]
+    explained = 1 - float(np.mean(left ** 2) / np.mean((wanted - wanted.mean()) ** 2))
+    if explained < LEAST_EXPLAINED and (friction is not NO_FRICTION or harmonics):
+        raise Unidentifiable(f"what was found explains {100 * explained:.0f} % of what creeping takes: it is something else; give more "
+                             "--travel, of two turns of the motor or more, or leave out --creep")
+    return motor, Creep(friction, float(found[1]), harmonics, explained,
                         [] if no_cogging(motor) else [(order, order * passing) for order in hidden])

@@ -19,7 +19,7 @@ namespace rmac::verifier {
 namespace {
 
 constexpr double kPlanning_s = 10;                    ///< of CPU time, for a program of a few moves
-constexpr std::int64_t kStanding = 500;               ///< cycles without progress
+constexpr double kStanding_s = 0.5;                   ///< without progress
 constexpr double kLimits = 1.01;                      ///< of a joint's limits, from differences of its positions
 constexpr double kOffTravel = 1e-5;                   ///< mm or degrees
 constexpr double kOffLine_mm = 1e-5;                  ///< beside the tolerance
@@ -138,7 +138,7 @@ class PlannedMovesCheck {
     frames_ = {Frame{}, given_.tools[static_cast<std::size_t>(program_) % given_.tools.size()]};
     builder_.restart(joints_, frames_);
     moves_.clear();
-    begun_cpu_s_ = process_time_s();
+    planned_cpu_s_ = 0;
     for (int i = 0; i < kMoves; ++i) {
       Move move;
       move.id = static_cast<std::int64_t>(moves_.size());
@@ -159,9 +159,10 @@ class PlannedMovesCheck {
   }
 
   Checked come_to_rest() {
-    for (std::int64_t standing = 0; standing < kStanding; standing = setpoint_.moving ? 0 : standing + 1) {
+    const std::int64_t most = std::llround(kStanding_s / given_.model.period_s);
+    for (std::int64_t standing = 0; standing < most; standing = setpoint_.moving ? 0 : standing + 1) {
       if (auto fine = plan().and_then([&] { return cycle(); }); !fine) return fine;
-      planner_.step(progress());
+      step();
       if (planner_.moves_left() == 0 && planner_.idle(progress()) && planner_.at_rest(progress())) return is_at_end();
     }
     return fault("it stands in mid-path for half a second, and the planner finds no way on");
@@ -177,10 +178,16 @@ class PlannedMovesCheck {
     return {};
   }
 
+  void step() {
+    const double begun_s = process_time_s();
+    planner_.step(progress());
+    planned_cpu_s_ += process_time_s() - begun_s;
+  }
+
   Checked plan() {
     while (!planner_.idle(progress())) {
-      planner_.step(progress());
-      if (process_time_s() - begun_cpu_s_ > kPlanning_s) {
+      step();
+      if (planned_cpu_s_ > kPlanning_s) {
         return fault(fmt::format("the planner works on it for more than {} s", kPlanning_s));
       }
     }
@@ -262,7 +269,7 @@ class PlannedMovesCheck {
   int program_ = 0;  ///< at hand, with those below
   Frames frames_;
   std::vector<Move> moves_;  ///< by their ids
-  double begun_cpu_s_ = 0;
+  double planned_cpu_s_ = 0;
 };
 
 }  // namespace

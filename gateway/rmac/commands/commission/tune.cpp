@@ -113,9 +113,9 @@ Result<Json> measure_response(Connection& connection, const TuneOptions& options
     });
     if (!swept) return tl::unexpected(swept.error());
     words = before;
-    words.insert(words.end(),
-                 {"--sweep-period", fmt::format("{}", sweep.period_s), "--sweeps", std::to_string(sweep.sweeps),
-                  "--from-hz", fmt::format("{}", sweep.from_hz), "--to-hz", fmt::format("{}", sweep.to_hz), "--sweep"});
+    words.insert(words.end(), {"--sweep-effort", fmt::format("{}", sweep.effort), "--sweep-period",
+                               fmt::format("{}", sweep.period_s), "--sweeps", std::to_string(sweep.sweeps), "--from-hz",
+                               fmt::format("{}", sweep.from_hz), "--to-hz", fmt::format("{}", sweep.to_hz), "--sweep"});
     for (const TemporaryFile& record : records) words.push_back(record.path());
     words.emplace_back("--sweep-begin");
     words.insert(words.end(), begins.begin(), begins.end());

@@ -15,8 +15,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Where less of creeping is explained, the joint still sticks under what was found: belts of 45 and 58 Hz had 96 and
-/// 98 %, screws 99.
+/// Where less of creeping is explained, the joint still sticks under what was found. Of a joint without friction
+/// nothing but noise may be left to explain.
 constexpr double kUnderstood_percent = 98;
 
 void print_filters(const Json& filters) {
@@ -56,16 +56,16 @@ void print_creep(const Json& found, const char* way, const char* effort) {
     }
     fmt::print(
         "cogging of {} periods a turn is not told: it passed at {} Hz, where the joint gives way so that it does not "
-        "show "
-        "how much there is\n",
+        "show how much there is\n",
         fmt::join(orders, ", "), fmt::join(places, ", "));
   }
   if (!motor.is_null() && harmonics.empty() && hidden.empty()) fmt::print("cogging: none\n");
   const double explained = 100 * creep["explained"].get<double>();
   fmt::print("the model explains {:.1f} % of what creeping takes{}\n", explained,
-             explained < kUnderstood_percent ? ": friction is something else here, as behind a soft belt or play; see "
-                                               "what `rmac measure-following` shows before you keep it"
-                                             : "");
+             creep["friction"] > 0 && explained < kUnderstood_percent
+                 ? ": friction is something else here, as behind a soft belt or play; see "
+                   "what `rmac measure-following` shows before you keep it"
+                 : "");
 }
 
 }  // namespace

@@ -12,9 +12,9 @@ namespace {
 namespace fs = std::filesystem;
 
 struct VerifyOptions {
-  std::string machine;      ///< its name, or the path of its folder or of its device.json
-  fs::path device_tree;     ///< with a path; empty: the installation's
-  double period_s = 0.001;  ///< with a path
+  std::string machine;             ///< its name, or the path of its folder or of its device.json
+  fs::path device_tree;            ///< with a path; empty: the installation's
+  std::optional<double> period_s;  ///< with a path
 };
 
 Result<> show(const verifier::Report& report, bool json) {
@@ -54,12 +54,16 @@ void add_verify(Command& rmac) {
       .required();
   verify.option("--device-tree", &options->device_tree,
                 "with a path: the tree whose shared modules it may name; the installation's unless given");
-  verify.option("--period", &options->period_s, "with a path: cycle of the servo loop, s (period_s in rmacd.json)")
-      .within(0.0001, 0.1)
-      .shows_default();
-  verify.does([options](Call& call) {
+  verify
+      .option("--period", &options->period_s,
+              "with a path: cycle of the servo loop, s; 0.001 unless given. An appliance has its own (period_s in "
+              "rmacd.json)")
+      .within(0.0001, 0.1);
+  verify.does([options](Call& call) -> Result<> {
     if (gateway::is_path_of_machine(options->machine))
-      return verify_files(options->machine, options->device_tree, options->period_s, call.json());
+      return verify_files(options->machine, options->device_tree, options->period_s.value_or(0.001), call.json());
+    if (options->period_s)
+      return fail("--period: an appliance verifies at its own cycle; give the path of the machine");
     return call.appliance().and_then(
         [&](Connection* appliance) { return verify_machine(*appliance, options->machine, call.json()); });
   });
