@@ -28,22 +28,24 @@ class TuneCreep(TuningTest):
 
     def test_the_tree_has_what_tune_finds(self):
         """Gains, filters, friction and cogging of its machines are those that anybody finds on their axes."""
-        # A of the large machine is found a little otherwise each time, with a bandwidth of 15.2 to 18 Hz in 15 runs, and 16.5 in the tree:
-        # by a tenth of it Kp changes by its square, and Ki by its cube.
-        same, tenth = (0.06, 0.06, 0.06), (0.21, 0.33, 0.15)
-        for machine, number, travel, scatter in (("DMACXYZ", 0, "20", same), ("SuginoXYZ", 0, "40", same),
-                                                 ("TarusXYZCATwin", 0, "40", same), ("TarusXYZCATwin", 4, "40", tenth)):
+        # A of the large machine is found otherwise each time, its Ki from 5200 to 7400 in 14 runs: what the tree has is between.
+        for machine, number, travel, scatter, runs in (("DMACXYZ", 0, "20", 0.06, 1), ("SuginoXYZ", 0, "40", 0.06, 1),
+                                                       ("TarusXYZCATwin", 0, "40", 0.06, 1), ("TarusXYZCATwin", 4, "40", 0.15, 5)):
             with self.subTest(machine, joint=number), Appliance() as appliance, tempfile.TemporaryDirectory() as folder:
                 self.rmac(appliance, "load", machine)
                 words = ("tune", str(number), "--travel", travel, "--creep", "-o", str(pathlib.Path(folder, "tune.png")))
                 found = json.loads(self.rmac(appliance, "--json", *words))
+                gains = [found["pid_gains"]]
+                while len(gains) < runs:
+                    gains.append(json.loads(self.rmac(appliance, "--json", *words[:4], *words[5:]))["pid_gains"])
+                found["pid_gains"] = [sum(each) / runs for each in zip(*gains, strict=True)]
                 device = json.loads(next(appliance.tree.glob(f"*/*/{machine}/device.json")).read_text())
                 self.has(device, number, found, scatter)
 
     def has(self, device, number, found, scatter):
         joint, creep = device["Joints"][number], found["creep"]
-        for gain, own, delta in zip(found["pid_gains"], joint["Gains"][:3], scatter, strict=True):
-            self.assertAlmostEqual(gain / own, 1, delta=delta)
+        for gain, own in zip(found["pid_gains"], joint["Gains"][:3], strict=True):
+            self.assertAlmostEqual(gain / own, 1, delta=scatter)
         (notch,), (own,) = found["proposed"]["filters"]["Resonances"], joint["Resonances"]
         self.assertAlmostEqual(notch["Frequency"], own["Frequency"], delta=3)
         self.assertEqual(found["proposed"]["filters"]["LowPass"], joint.get("LowPass", 0))

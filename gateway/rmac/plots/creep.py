@@ -222,7 +222,7 @@ def orders_of(turning, shape, known, least):
     orders += [order for order in low if order not in orders]
     per_row = np.quantile(np.abs(np.diff(turning.angle[turning.steady])), 0.9)
     tried = np.arange(LOWEST_ORDER, int(min(HIGHEST_ORDER, np.pi / (3 * per_row))) + 1)
-    most = max(MOST_HARMONICS, len(orders)) if not low else len(orders) + MOST_HARMONICS
+    most = max(MOST_HARMONICS, len(known)) + len(low)
     while len(orders) < most and len(tried):
         found, _, _ = solve([turning], shape, orders)
         columns = [turning.friction(*shape), np.ones(len(turning.left)), *turning.harmonics(orders)]

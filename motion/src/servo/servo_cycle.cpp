@@ -263,6 +263,7 @@ void ServoLoop::Impl::watch_motion(const ServoCommand& command) noexcept {
                       .wanted_speed = setpoints.velocity()[j],
                       .wanted_acceleration = setpoints.acceleration()[j],
                       .effort = laws.effort()[j],
+                      .answer_delay = wiring.joint_delays()[j],
                       .answered = has(positions.answered(), j)},
                      state);
     } else {
@@ -352,7 +353,7 @@ IndexSet ServoLoop::Impl::controlled() const noexcept {
 void ServoLoop::Impl::make_setpoints_of_drives() noexcept {
   torques.let_go();
   if (state.powered()) torques.make(joints.positions(), {laws.effort().data(), wiring.joints()}, state);
-  if (state.powered()) torques.add(gantries.torques_nm(), controlled());
+  if (state.powered() && !gantries.empty()) torques.add(gantries.torques_nm(), controlled());
   if (!wiring.all_take_torque() || torques.know_cogging()) {
     std::array<double, kMaxJoints> wanted{};
     transmission.shafts_for(setpoints.positions(), {wanted.data(), wiring.actuators()});

@@ -61,7 +61,8 @@ void add_verify(Command& rmac) {
       .within(0.0001, 0.1);
   verify.does([options](Call& call) -> Result<> {
     if (gateway::is_path_of_machine(options->machine))
-      return verify_files(options->machine, options->device_tree, options->period_s.value_or(0.001), call.json());
+      return verify_files(options->machine, options->device_tree,
+                          options->period_s.value_or(gateway::Verification::Options{}.period_s), call.json());
     if (options->period_s)
       return fail("--period: an appliance verifies at its own cycle; give the path of the machine");
     return call.appliance().and_then(

@@ -89,7 +89,7 @@ const Gantries::Motor* Gantries::motor(std::size_t actuator) const noexcept {
 }
 
 void Gantries::read(std::span<const double> shafts, std::span<const double> rad_s) noexcept {
-  if (joints_.empty()) return;
+  if (empty()) return;
   const ActuatorMap& map = *parts_.actuator_map;
   const std::size_t joints = parts_.joints.size(), actuators = shafts.size();
   std::array<double, kMaxJoints> now{}, moved{}, from{}, to{};
@@ -157,21 +157,21 @@ void Gantries::go_on(std::size_t joint) noexcept {
   if (Joint* const found = of(joint)) start(*found, false);
 }
 
-bool Gantries::froze(Motor& motor, const Joint& joint, const Seen& seen) const noexcept {
-  const double at = at_[joint.joint];
-  const auto motors = static_cast<double>(joint.motors.size());
-  const double effort = seen.effort / motors + motor.held;
+void Gantries::note_digits(Motor& motor, const Joint& joint, const Seen& seen) const noexcept {
+  const double effort = seen.effort / static_cast<double>(joint.motors.size()) + motor.held;
   if (joint.begins) {
     motor.digits.begin(motor.way, effort);
-    motor.still_since = at;
-    return false;
+  } else if (seen.answered) {
+    motor.digits.note(motor.way, effort);
   }
-  if (seen.answered) motor.digits.note(motor.way, effort);
-  if (motor.digits.same() == 0) motor.still_since = at;
+  if (joint.begins || motor.digits.same() == 0) motor.still_since = at_[joint.joint];
+}
+
+bool Gantries::froze(const Motor& motor, const Joint& joint) const noexcept {
   const double least = std::max(kGoesOnDigits * motor.digits.digit(), kGoesOn * joint.given.max_skew);
-  if (std::abs(at - motor.still_since) <= least) return false;
-  const double enough = std::max(kBreaksLoose * parts_.joints[joint.joint].max_effort / motors,
-                                 kMoreThanUsual * motor.digits.usual_change());
+  if (std::abs(at_[joint.joint] - motor.still_since) <= least) return false;
+  const double share = parts_.joints[joint.joint].max_effort / static_cast<double>(joint.motors.size());
+  const double enough = std::max(kBreaksLoose * share, kMoreThanUsual * motor.digits.usual_change());
   const bool pushed = motor.digits.effort_change() > enough;
   return motor.digits.froze() || (pushed && static_cast<double>(motor.digits.same()) * period_s_ >= kStaysS);
 }
@@ -202,7 +202,10 @@ void Gantries::watch(std::size_t joint, const Seen& seen, FaultSink& faults) noe
     const double ahead = ahead_[motor.actuator];
     if (!std::isfinite(ahead)) {
       faults.raise({ServoFault::Kind::NotANumber, ServoFault::Part::Actuator, index, ahead, 0});
-    } else if (froze(motor, *found, seen)) {
+      continue;
+    }
+    note_digits(motor, *found, seen);
+    if (froze(motor, *found)) {
       faults.raise({ServoFault::Kind::EncoderFrozen, ServoFault::Part::Actuator, index,
                     static_cast<double>(motor.digits.same()) * period_s_, motor.digits.effort_change()});
     }
@@ -210,8 +213,7 @@ void Gantries::watch(std::size_t joint, const Seen& seen, FaultSink& faults) noe
   watch_skew(*found, seen, faults);
   const Motor& first = found->motors.front();
   found->oscillation.step({.effort = first.held * static_cast<double>(found->motors.size()),
-                           .answer_delay = parts_.actuators[first.actuator].bus->interface->answer_delay(
-                               parts_.actuators[first.actuator].axis),
+                           .answer_delay = seen.answer_delay,
                            .position = ahead_[first.actuator],
                            .acceleration_set = seen.wanted_acceleration},
                           faults);

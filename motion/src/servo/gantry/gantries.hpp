@@ -29,6 +29,8 @@ class Gantries {
   /// Both must outlive it.
   Gantries(const ServoLoopParts& parts, const Wiring& wiring);
 
+  /// No joint has motors side by side.
+  [[nodiscard]] bool empty() const noexcept { return joints_.empty(); }
   /// One cycle: where the shafts are, and how fast they turn.
   void read(std::span<const double> shafts, std::span<const double> rad_s) noexcept;
   /// Nobody knows any more how these motors belong.
@@ -42,6 +44,7 @@ class Gantries {
     double wanted = 0, wanted_speed = 0;  ///< where and how fast it is to be
     double wanted_acceleration = 0;
     double effort = 0;      ///< that its law gave it
+    int answer_delay = 0;   ///< its position is that of so many cycles before
     bool answered = false;  ///< its drives did, in this cycle
   };
   /// One cycle of a joint under control.
@@ -91,8 +94,9 @@ class Gantries {
   [[nodiscard]] Joint* of(std::size_t joint) noexcept;
   [[nodiscard]] const Motor* motor(std::size_t actuator) const noexcept;
   [[nodiscard]] double skew(const Joint& joint) const noexcept;
+  void note_digits(Motor& motor, const Joint& joint, const Seen& seen) const noexcept;
   /// Whether its digits stay while the joint goes on by the others.
-  [[nodiscard]] bool froze(Motor& motor, const Joint& joint, const Seen& seen) const noexcept;
+  [[nodiscard]] bool froze(const Motor& motor, const Joint& joint) const noexcept;
   void watch_skew(Joint& joint, const Seen& seen, FaultSink& faults) noexcept;
   void start(Joint& joint, bool amiss) noexcept;
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "servo/joints/cycles_of.hpp"
+
 namespace rmac {
 
 namespace {
@@ -76,7 +78,7 @@ void ResponseWatch::watch_direction(const ResponseSeen& seen, double way, FaultS
     forget_direction(error);
     return;
   }
-  const int most = std::max(kAgainstCycles, static_cast<int>(std::ceil(kAgainstS / period_s_)));
+  const auto most = static_cast<int>(cycles_of(kAgainstS, period_s_, kAgainstCycles));
   const int half = (most - 1) / 2;
   if (against_ > 0) (against_ <= half ? first_gain_ : last_gain_) += std::abs(way) - std::abs(last_way_);
   ++against_;
