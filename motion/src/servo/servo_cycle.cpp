@@ -243,6 +243,7 @@ JointSeen ServoLoop::Impl::seen(std::size_t joint) const noexcept {
           .contact = force_loop.state(),
           .searched = force_loop.searched(),
           .force_hangs = force_loop.sensor_hangs(),
+          .commanded = laws.effort()[joint],
           .bounces = force_loop.bounces(),
           .loop = {.effort = measured.value_or(laws.effort()[joint]),
                    .effort_measured = measured.has_value(),

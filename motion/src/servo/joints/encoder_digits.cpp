@@ -16,6 +16,9 @@ constexpr double kNoticedS = 0.003;
 constexpr int kNoticedCycles = 3;
 constexpr double kNoStep = 1e-9;  // what a transmission rounds
 constexpr double kFastDigits = 5;
+// Who turns round against its friction has twice what it was pulled loose with, and stick-slip takes a tenth of that. A
+// coarse digit that goes to and fro as well, because its loop hunts, takes as much each time.
+constexpr double kManyTimes = 20;
 
 }  // namespace
 
@@ -53,10 +56,17 @@ void EncoderDigits::note(double position, double effort) noexcept {
 
 void EncoderDigits::note_step(double step) noexcept {
   if (std::abs(step) > kNoStep) digit_ = digit_ > 0 ? std::min(digit_, std::abs(step)) : std::abs(step);
-  if (step * last_step_ < 0) turns_ = std::min(turns_ + 1, kTurns);
+  if (step * last_step_ < 0) {
+    turns_ = std::min(turns_ + 1, kTurns);
+    turns_at_all_ = std::min(turns_at_all_ + 1, kTurns);
+  }
   const bool fast = fast_ > 0 && std::abs(step) > std::max(fast_, kFastDigits * digit_) && step * last_step_ > 0;
   fast_cycles_ = fast ? std::min(fast_cycles_ + 1, 2) : 0;
   last_step_ = step;
+}
+
+bool EncoderDigits::never_rested_so() const noexcept {
+  return turns_at_all_ >= kTurns && same_ > rests_cycles_ && effort_.width() >= kManyTimes * usual_;
 }
 
 bool EncoderDigits::froze() const noexcept {

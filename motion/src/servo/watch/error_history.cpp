@@ -11,8 +11,8 @@ constexpr std::size_t kLeast = 3;    // samples: less may be a word that came la
 constexpr double kGrowsBy = 0.02;    // of the bound, in a sample: one word that is wrong makes one step
 constexpr double kStaysShare = 0.5;  // of what it was to go: less, and something holds it
 constexpr double kLeastWay = 0.05;   // mm or degrees: sound joints stand for so much where friction turns round
-constexpr double kRunsOn = 0.9;      // as in WrongDirection: less, and the effort holds it better and better
-constexpr double kThirdOfAll = 1.0 / 3;
+constexpr double kFar = 0.25;        // of the error: what stands beside its setpoint trembles
+constexpr double kRunsOn = 0.8;      // as in WrongDirection: less, and the effort holds it better and better
 
 }  // namespace
 
@@ -48,7 +48,7 @@ double ErrorHistory::gone() const noexcept {
 
 // In each third of the time it goes further away from its setpoint, against its effort, and by more and more.
 bool ErrorHistory::runs_away() const noexcept {
-  const auto third = static_cast<std::size_t>(static_cast<double>(kept_ - 1) * kThirdOfAll);
+  const std::size_t third = (kept_ - 1) / 3;
   if (third == 0) return false;
   const double error = ago(0).position_set - ago(0).position;
   const double before = ago(3 * third).position_set - ago(3 * third).position;
@@ -60,8 +60,25 @@ bool ErrorHistory::runs_away() const noexcept {
   const double pushes = ago(0).effort - ago(3 * third).effort;
   const bool against = pushes * away < 0 || (pushes == 0 && ago(0).effort * away < 0);
   const bool leaves = std::abs(error) - std::abs(before) > kStaysShare * std::abs(last + middle + first);
-  return against && leaves && first * away > -kStaysShare * last * away && last * away > 0 &&
+  const bool far = std::abs(last + middle + first) > kFar * std::abs(error);
+  return against && far && leaves && first * away > -kStaysShare * last * away && last * away > 0 &&
          (middle - first) * away > 0 && (last - middle) * away >= kRunsOn * (middle - first) * away;
+}
+
+// What is held swings against what holds it: now, or on average, more than before. The weight of what hangs is
+// in all of them.
+bool ErrorHistory::pushes(std::size_t since, double error) const noexcept {
+  if (ago(0).effort * error > 0) return true;
+  double sum = 0;
+  for (std::size_t k = 0; k < since; ++k) sum += ago(k).effort;
+  return (sum / static_cast<double>(since) - ago(since).effort) * error > 0;
+}
+
+// One word that is wrong makes one step, from an error as it always was.
+bool ErrorHistory::is_no_step(double bound) const noexcept {
+  const auto error_ago = [this](std::size_t k) { return std::abs(ago(k).position_set - ago(k).position); };
+  const bool grows = error_ago(0) > error_ago(1) && error_ago(1) > error_ago(2) + kGrowsBy * bound;
+  return grows || std::max(error_ago(1), error_ago(2)) > kStaysShare * bound;
 }
 
 ErrorHistory::Cause ErrorHistory::cause(double bound) const noexcept {
@@ -72,10 +89,8 @@ ErrorHistory::Cause ErrorHistory::cause(double bound) const noexcept {
   const double went = ago(0).position - ago(since).position;
   const double error = ago(0).position_set - ago(0).position;
   const bool behind = error * wanted > 0 && std::abs(wanted) > std::max(kStaysShare * bound, kLeastWay);
-  const bool pushed = ago(0).effort * error > 0;
-  const auto error_ago = [this](std::size_t k) { return std::abs(ago(k).position_set - ago(k).position); };
-  const bool grows = error_ago(0) > error_ago(1) && error_ago(1) > error_ago(2) + kGrowsBy * bound;
-  if (behind && pushed && grows && went * wanted < kStaysShare * wanted * wanted) return Cause::StandsStill;
+  if (behind && pushes(since, error) && is_no_step(bound) && went * wanted < kStaysShare * wanted * wanted)
+    return Cause::StandsStill;
   return Cause::Unknown;
 }
 

@@ -37,6 +37,8 @@ class ErrorHistory {
   /// Samples ago since when the joint was to go about its bound.
   [[nodiscard]] std::size_t wanted_since(double bound) const noexcept;
   [[nodiscard]] bool runs_away() const noexcept;
+  [[nodiscard]] bool pushes(std::size_t since, double error) const noexcept;
+  [[nodiscard]] bool is_no_step(double bound) const noexcept;
 
   int cycles_a_sample_;
   double period_s_;

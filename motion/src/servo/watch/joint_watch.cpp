@@ -8,12 +8,34 @@ void JointWatch::raise(ServoFault::Kind kind, double value, double bound, FaultS
   faults.raise({kind, ServoFault::Part::Joint, index_, value, bound});
 }
 
+namespace {
+
+struct OneFault final : FaultSink {
+  void raise(const ServoFault& fault) noexcept override { found = fault; }
+  std::optional<ServoFault> found{};
+};
+
+}  // namespace
+
+/// Who swings more and more changes its speed by more than it may, and with all its effort becomes faster than is
+/// believed. A reading that jumps makes a joint swing afterwards.
+bool JointWatch::comes_of_swing(const JumpSeen& jump) const noexcept {
+  constexpr double kLittleMore = 2;
+  const bool little = !jump.refused && std::abs(jump.jump) <= kLittleMore * joint_->bounds.jump;
+  return oscillation_.swings() && (little || jump.shakes);
+}
+
 void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
   const JointBounds& bounds = joint_->bounds;
   JumpSeen jump = seen.position;
   jump.trembles = oscillation_.trembles();
   jump.shakes = oscillation_.shakes();
-  jumps_.step(jump, faults);
+  OneFault jumped;
+  jumps_.step(jump, jumped);
+  if (jumped.found) {
+    if (comes_of_swing(jump)) oscillation_.raise(faults);
+    faults.raise(*jumped.found);
+  }
   watch_sensor(faults);
   if (seen.bounces) {
     oscillation_.rest();
@@ -21,6 +43,7 @@ void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
     oscillation_.step(seen.loop, faults);
   }
   response_.step({.effort = oscillation_.acted(),
+                  .commanded = seen.commanded,
                   .position = seen.loop.position,
                   .position_set = seen.following_error + seen.loop.position,
                   .out_of_bound = std::abs(seen.following_error) > joint_->max_following_error,
@@ -32,6 +55,7 @@ void JointWatch::step(const JointSeen& seen, FaultSink& faults) noexcept {
     response_.name_error(seen.following_error, faults);
   }
   if (too_fast_.step(seen.velocity, bounds.velocity)) {
+    if (oscillation_.swings()) oscillation_.raise(faults);
     raise(ServoFault::Kind::VelocityBound, seen.velocity, bounds.velocity, faults);
   }
   const bool by_force = joint_->method == ControlMethod::Force;

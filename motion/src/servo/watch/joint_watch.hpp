@@ -24,6 +24,7 @@ struct JointSeen {
   ContactState contact = ContactState::None;
   double searched = 0;       ///< way without contact
   bool force_hangs = false;  ///< it stays the same, however the joint is pushed
+  double commanded = 0;      ///< effort that its loop asks for
   bool bounces = false;      ///< off the part that it comes upon: it swings, and its loop does not
   OscillationSeen loop{};
 };
@@ -50,6 +51,7 @@ class JointWatch {
   }
 
  private:
+  [[nodiscard]] bool comes_of_swing(const JumpSeen& jump) const noexcept;
   void watch_sensor(FaultSink& faults) const noexcept;
   void watch_contact(const JointSeen& seen, FaultSink& faults) const noexcept;
   void raise(ServoFault::Kind kind, double value, double bound, FaultSink& faults) const noexcept;

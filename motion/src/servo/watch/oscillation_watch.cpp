@@ -8,28 +8,35 @@ namespace rmac {
 
 namespace {
 
-constexpr double kLeastSwing = 0.2;     // of MaxEffort, peak to peak: less does no harm, and cutting does that
-constexpr double kLeastTimeS = 0.03;    // over which a quick swing is looked at, for it is seen by samples
-constexpr double kSlowestTurnS = 0.06;  // what turns round less often is left to the following error
-constexpr double kLasts = 0.8;          // a swing with a damping of 2.4 % falls to so much in a period and a half
+// Of MaxEffort, peak to peak: less than a fifth does no harm, and cutting does that. A motor may give a tenth more than
+// it is said to.
+constexpr double kLeastSwing = 0.18;
+constexpr double kCurrentLoopS = 0.0002;  // by which a torque comes after its command: of a current loop of 800 Hz
+constexpr double kLeastTimeS = 0.03;      // over which a quick swing is looked at, for it is seen by samples
+constexpr double kSlowestTurnS = 0.06;    // what turns round less often is left to the following error
+constexpr double kLasts = 0.8;            // a swing with a damping of 2.4 % falls to so much in a period and a half
 // Below, a loop with an integral part gives energy to what a slow force from outside moves, too: it has to grow.
 constexpr double kSlowHz = 40, kGrows = 1.3;
 // Where a loop gives back no more than friction takes, the work is next to nothing, and half a cycle by which effort
 // and way are apart decides on its sign. What holds back a force from outside is far below.
 constexpr double kResists = 0.12;
+constexpr double kKept = 0.85;     // of the work until then, at each turn
 constexpr double kRises = 1.05;    // since the first turns: it grows, if slowly
 constexpr double kPathTurn = 0.1;  // of the largest acceleration that the path asks for
 constexpr double kLeastAcceleration = 1e-3;
 
 }  // namespace
 
-/// What acted while the joint went its last way. A torque that drives measure is told with the position. What was
-/// commanded a cycle ago acted in that cycle, at the earliest.
-void OscillationWatch::take_effort(const OscillationSeen& seen) noexcept {
-  std::rotate(commanded_.begin(), commanded_.end() - 1, commanded_.end());
-  commanded_[0] = seen.effort;
-  last_effort_ =
-      seen.effort_measured ? seen.effort : commanded_[static_cast<std::size_t>(std::max(1, seen.answer_delay))];
+/// What acted while the joint went its last way: half a cycle aside, or what a current loop takes, turns the sign of
+/// the work at 175 Hz and 1 kHz. A torque that drives measure is that at the end of the way. What was commanded a cycle
+/// ago acted in that cycle, at the earliest. Returned is the latest of them.
+double OscillationWatch::take_effort(const OscillationSeen& seen) noexcept {
+  std::rotate(efforts_.begin(), efforts_.end() - 1, efforts_.end());
+  efforts_[0] = seen.effort;
+  const auto acts = seen.effort_measured ? 0U : static_cast<std::size_t>(std::max(1, seen.answer_delay));
+  const double before = seen.effort_measured ? 0.5 : std::min(1.0, kCurrentLoopS / period_s_);
+  acted_ = std::lerp(efforts_[acts], efforts_[acts + 1], before);
+  return efforts_[acts];
 }
 
 void OscillationWatch::begin() noexcept {
@@ -44,7 +51,7 @@ void OscillationWatch::begin() noexcept {
 void OscillationWatch::rest() noexcept {
   begin();
   turns_.restart();
-  commanded_.fill(0);
+  efforts_.fill(0);
   begun_ = false;
   chain_ = path_chain_ = 0;
 }
@@ -60,6 +67,8 @@ void OscillationWatch::add_turn() noexcept {
   ++turned_;
   ++chain_;
   last_turn_ = cycles_;
+  // What began it, a blow or another gain, is in the first of them.
+  for (double* const sum : {&changes_.work, &changes_.efforts, &changes_.ways}) *sum *= kKept;
 }
 
 double OscillationWatch::hz() const noexcept {
@@ -81,10 +90,9 @@ bool OscillationWatch::lasts() const noexcept {
 
 void OscillationWatch::step(const OscillationSeen& seen, FaultSink& faults) noexcept {
   const double way = begun_ ? seen.position - last_position_ : 0;
-  const double before = last_effort_;
-  take_effort(seen);
-  const double effort = last_effort_;
-  const double effort_change = begun_ ? effort - before : 0, way_change = begun_ ? way - last_way_ : 0;
+  const double before = acted_;
+  const double effort = take_effort(seen);
+  const double effort_change = begun_ ? acted_ - before : 0, way_change = begun_ ? way - last_way_ : 0;
   last_position_ = seen.position;
   last_way_ = way;
   begun_ = true;

@@ -31,7 +31,7 @@ class OscillationWatch {
 
   void step(const OscillationSeen& seen, FaultSink& faults) noexcept;
   /// The effort that acted while the joint went its last way.
-  [[nodiscard]] double acted() const noexcept { return last_effort_; }
+  [[nodiscard]] double acted() const noexcept { return acted_; }
   /// Two periods of it were seen, which the path does not explain.
   [[nodiscard]] bool swings() const noexcept { return turned_ >= kTurns - 2 + 2 * path_turned_; }
   /// The effort turned round some times more than the path explains.
@@ -46,7 +46,7 @@ class OscillationWatch {
   static constexpr int kTurns = 7;     ///< three periods
   static constexpr int kCompared = 2;  ///< swings, the latest with the first
 
-  void take_effort(const OscillationSeen& seen) noexcept;
+  double take_effort(const OscillationSeen& seen) noexcept;
   void begin() noexcept;
   void add_turn() noexcept;
   [[nodiscard]] double hz() const noexcept;
@@ -58,9 +58,9 @@ class OscillationWatch {
   double period_s_;
 
   TurnCounter turns_;
-  TurnCounter path_turns_;                                ///< of the wanted acceleration
-  std::array<double, kMostAnswerDelay + 1> commanded_{};  ///< efforts of the last cycles, the latest first
-  double last_effort_ = 0, last_way_ = 0, last_position_ = 0;
+  TurnCounter path_turns_;                              ///< of the wanted acceleration
+  std::array<double, kMostAnswerDelay + 2> efforts_{};  ///< of the last cycles, the latest first
+  double acted_ = 0, last_way_ = 0, last_position_ = 0;
   bool begun_ = false;  ///< there was a cycle before
 
   // Since the first turn.
@@ -76,7 +76,7 @@ class OscillationWatch {
     double first = 0;  ///< the sum of so many
   } swings_;
   struct {
-    double work = 0;               ///< of the efforts' changes on the ways' changes
+    double work = 0;               ///< of the efforts' changes on the ways' changes, the latest for the most part
     double efforts = 0, ways = 0;  ///< sums of the squares of both
   } changes_;
 };

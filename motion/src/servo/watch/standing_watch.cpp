@@ -14,7 +14,7 @@ constexpr double kStandsS = 0.02;
 constexpr int kStandsCycles = 5;  // which are more than answers that come late, or once not, explain
 constexpr double kStandsWay = 1;  // mm or degrees that it was to go meanwhile
 constexpr double kOfBound = 0.8;  // of MaxFollowingError: what it was to go where it left that sooner
-constexpr double kStretchWay = 0.1, kStretchS = 0.001;
+constexpr double kStretchWay = 0.05, kStretchS = 0.001;
 constexpr double kStandsShare = 0.25;  // of what it was to go, and was pushed to: what blocks it gives way
 constexpr double kDeadShare = 0.01;    // of what it was to go: by whatever it was pushed
 constexpr double kMostly = 2;          // times MaxAcceleration, that all its effort gives a joint that is free
@@ -24,6 +24,7 @@ constexpr double kLeastRange = 0.1;    // of MaxFollowingError: a path that trem
 
 constexpr int kRestsCycles = 5;         // of the setpoint
 constexpr double kFrozenEffort = 0.03;  // of MaxEffort, by which it changes meanwhile
+constexpr double kFarDigits = 10;       // that it was to go, where only its effort tells
 constexpr double kStillS = 0.1;         // of an encoder whose last digit may rest, as a coarse one's
 constexpr double kStillEffort = 0.2;    // more than twice the friction, where the joint is to turn round
 
@@ -79,7 +80,8 @@ void StandingWatch::watch_digits(const ResponseSeen& seen, FaultSink& faults) co
   const double usual = digits_.usual_change() / joint_->max_effort;
   const double for_s = static_cast<double>(digits_.same()) * period_s_;
   const double away = seen.position_set - set_still_;
-  if (froze()) {
+  const bool is_far = std::abs(away) > kFarDigits * digits_.digit();
+  if (froze() || (is_far && digits_.never_rested_so())) {
     if (for_s < kStandsS || changed < std::clamp(2 * usual, kFrozenEffort, kStillEffort)) return;
     raise_frozen(faults);
   } else if (!slips() && for_s >= kStillS && changed >= kStillEffort && std::abs(away) > 2 * digits_.digit()) {
@@ -188,7 +190,8 @@ void StandingWatch::begin_limit(const ResponseSeen& seen) noexcept {
 
 void StandingWatch::watch_limit(const ResponseSeen& seen, FaultSink& faults) noexcept {
   const double acceleration = joint_->bounds.stop_deceleration;
-  const bool at_limit = joint_->max_effort > 0 && std::abs(seen.effort) >= kLimit * joint_->max_effort;
+  const double effort = std::max(std::abs(seen.effort), std::abs(seen.commanded));
+  const bool at_limit = joint_->max_effort > 0 && effort >= kLimit * joint_->max_effort;
   if (!(acceleration > 0) || slips()) return;
   // What trembles at its limit is not at it in each cycle.
   at_limit_.cycles = std::max<std::int64_t>(0, at_limit_.cycles + (at_limit ? 1 : -2));

@@ -68,7 +68,7 @@ class StandingWatch {
   double set_still_ = 0;  ///< where it was to be when they began to stay
 
   // The way that the joint was to go lately.
-  static constexpr std::size_t kMostStretches = 24;
+  static constexpr std::size_t kMostStretches = 48;
   std::array<Stretch, kMostStretches> stretches_{};
   std::size_t latest_ = 0, stretched_ = 0;
   double set_before_ = 0;

@@ -61,6 +61,7 @@ void SeededFault::break_it() {
   const double most_nm = drive_.max_effort * drive_.nm_per_effort;
   fieldbus::PlantContact met{.stiffness_nm_rad = most_nm / (log_uniform(0.01, 0.1) / drive_.mm_per_rad),
                              .surface_rad = plant.load_rad()};
+  truth_.met_stiffness_nm_rad = met.stiffness_nm_rad;
   met.damping_nm_s_rad = 0.2 * std::sqrt(met.stiffness_nm_rad * plant.parameters().inertia_kg_m2());
   switch (broken_) {
     case Broken::FrozenEncoder:

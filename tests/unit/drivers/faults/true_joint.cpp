@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rmac::fault_test {
 
@@ -12,8 +13,10 @@ double TrueJoint::way_to_stop() const {
   const double most_nm = drive_.max_effort * drive_.nm_per_effort;
   const double inertia = plant.inertia_kg_m2();
   const double weight = std::abs(plant.gravity_nm);
-  // A spring that took up what it had a moment ago gives it back.
-  const double speed = fastest_ + (most_nm + weight) / inertia * kUntilItBrakes;
+  // A spring that took up what it had a moment ago gives it back, and so does what it came upon.
+  const double thrown =
+      met_stiffness_nm_rad > 0 ? std::abs(plant_->contact_nm()) / std::sqrt(met_stiffness_nm_rad * inertia) : 0;
+  const double speed = std::hypot(fastest_, thrown) + (most_nm + weight) / inertia * kUntilItBrakes;
   const double brakes = std::max(plant.rated_torque_nm - weight, 0.1 * plant.rated_torque_nm);
   const double twist = plant.stiffness_nm_rad > 0 ? 2 * most_nm / plant.stiffness_nm_rad : 0;
   const double way = speed * kUntilItBrakes + speed * speed * inertia / (2 * brakes) + twist;
@@ -57,21 +60,28 @@ void TrueJoint::look_at_contact() {
   if (since_contact++ == 0) commanded = 0;
 }
 
+std::optional<double> TrueJoint::Turns::step(double now, double least) {
+  if (rises ? now >= extreme : now <= extreme) extreme = now;
+  if (std::abs(now - extreme) <= least) return std::nullopt;
+  rises = !rises;
+  return std::exchange(extreme, now);
+}
+
 void TrueJoint::look_at_swings() {
-  constexpr double kSwing = 0.2, kDecays = 0.8;
+  constexpr double kSwing = 0.2, kSmaller = kSwing * 5 / 6, kDecays = 0.8;
   constexpr int kSlowestTurn = 60;
-  const double now = effort_share();
+  if (++since_smaller_ > kSlowestTurn) chain = 0;
+  if (smaller_.step(effort_share(), kSmaller)) {
+    ++chain;
+    since_smaller_ = 0;
+  }
   if (since_swing > 0) ++since_swing;
-  if (since_swing > 0 && since_swing - last_turn_ > kSlowestTurn) since_swing = turns = chain = last_turn_ = 0;
-  if (rises_ ? now >= extreme_ : now <= extreme_) extreme_ = now;
-  if (std::abs(now - extreme_) <= kSwing) return;
-  const double swing = std::abs(extreme_ - turned_at_);
-  turned_at_ = extreme_;
-  extreme_ = now;
-  rises_ = !rises_;
+  if (since_swing > 0 && since_swing - last_turn_ > kSlowestTurn) since_swing = turns = last_turn_ = 0;
+  const std::optional<double> turned = large_.step(effort_share(), kSwing);
+  if (!turned) return;
+  const double swing = std::abs(*turned - std::exchange(turned_at_, *turned));
   if (since_swing == 0) since_swing = 1;
   ++turns;
-  ++chain;
   last_turn_ = since_swing;
   last_swings_ = swing + swing_before_;
   swing_before_ = swing;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "rmac/fieldbus/simulated_plant.hpp"
 #include "tree_machine.hpp"
 
@@ -25,14 +27,16 @@ class TrueJoint {
   /// Cycles since its break, and since then with a way that was commanded, an effort above a quarter of the largest,
   /// a contact; 0: none yet.
   int since_break = 0, since_commanded = 0, since_effort = 0, since_contact = 0;
-  double commanded = 0;     ///< way since `since_commanded`, or `since_contact`, began
-  double most_contact = 0;  ///< N or N·m
-  double astray = 0;        ///< largest way that it went otherwise than it was to, since its break
+  double commanded = 0;             ///< way since `since_commanded`, or `since_contact`, began
+  double most_contact = 0;          ///< N or N·m
+  double met_stiffness_nm_rad = 0;  ///< of what it is to come upon
+  double astray = 0;                ///< largest way that it went otherwise than it was to, since its break
 
   // Swings of its motor's torque, by more than a fifth of the largest, peak to peak.
   int since_swing = 0;  ///< cycles since the first of those that follow each other within 60 ms
   int turns = 0;        ///< of them, since they decay no more
-  int chain = 0;        ///< of them all
+  int chain =
+      0;  ///< of them all, and of those that are a sixth smaller: a motor gives what it does within some per cent
   [[nodiscard]] bool still_swings() const;
   /// The path did so meanwhile, which turns the effort round as well.
   [[nodiscard]] bool path_speeds_up() const { return path_speeds_up_; }
@@ -46,8 +50,16 @@ class TrueJoint {
   const fieldbus::AxisPlant* plant_ = nullptr;
   double set_before_ = 0, set_at_break_ = 0, stood_at_break_ = 0;
   bool begun_ = false;
-  double extreme_ = 0, turned_at_ = 0, first_swings_ = 0, last_swings_ = 0, swing_before_ = 0;
-  bool rises_ = false;
+  /// Where a value turns round, having come back by `least`.
+  struct Turns {
+    double extreme = 0;
+    bool rises = false;
+    /// One cycle: the extreme, where it turned.
+    std::optional<double> step(double now, double least);
+  };
+  Turns large_, smaller_;
+  int since_smaller_ = 0;
+  double turned_at_ = 0, first_swings_ = 0, last_swings_ = 0, swing_before_ = 0;
   int last_turn_ = 0, away_ = 0;
   bool path_speeds_up_ = false;
   double fastest_ = 0;

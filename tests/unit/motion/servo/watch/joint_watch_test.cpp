@@ -1,5 +1,8 @@
 #include "servo/watch/joint_watch.hpp"
 
+#include <cmath>
+#include <numbers>
+
 #include "unit/motion/servo/recorded_faults.hpp"
 #include "unit/motion/servo/servo_fixture.hpp"
 
@@ -87,6 +90,44 @@ TEST_F(WatchedJoint, GoesTheWrongWayWhereItRunsAwayFromItsSetpointAgainstALittle
   }
   ASSERT_FALSE(faults_.raised.empty());
   EXPECT_EQ(faults_.raised[0].kind, Kind::WrongDirection);
+}
+
+/// Its loop swings at 100 Hz by 300 N of 2000, for 29 ms.
+class WatchedSwing : public WatchedJoint {
+ protected:
+  WatchedSwing() {
+    joint_.max_effort = 2000;
+    for (int i = 0; i < 29; ++i) swing(i, 0);
+    EXPECT_THAT(faults_.raised, IsEmpty()) << "it is too early to tell";
+  }
+  void swing(int i, double jump, bool refused = false, double velocity = 0) {
+    const double wave = std::sin(2 * std::numbers::pi * i / 10);
+    watch_.step({.position = {.jump = jump, .refused = refused},
+                 .velocity = velocity,
+                 .loop = {.effort = 300 * wave, .effort_measured = true, .position = 0.02 * wave}},
+                faults_);
+  }
+};
+
+TEST_F(WatchedSwing, IsWhyItsPositionJumpsByALittle) {
+  for (const int i : {29, 30, 31}) swing(i, 0);
+  swing(32, 0.15);
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_EQ(faults_.raised[0].kind, Kind::Oscillation);
+  EXPECT_TRUE(watch_.doubts_position()) << "it is not known all the same";
+}
+
+TEST_F(WatchedSwing, IsNotWhyItsPositionJumpsFar) {
+  for (const int i : {29, 30, 31}) swing(i, 0);
+  swing(32, 0.25);
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_EQ(faults_.raised[0].kind, Kind::EncoderJump);
+}
+
+TEST_F(WatchedSwing, IsWhyItBecomesTooFast) {
+  for (int i = 29; i < 32; ++i) swing(i, 0, false, 101);
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_EQ(faults_.raised[0].kind, Kind::Oscillation);
 }
 
 TEST_F(WatchedJoint, WithoutABoundMayJumpAndRun) {

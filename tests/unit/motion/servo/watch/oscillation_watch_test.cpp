@@ -3,6 +3,7 @@
 #include <functional>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "unit/motion/servo/recorded_faults.hpp"
 #include "unit/motion/servo/servo_fixture.hpp"
@@ -140,6 +141,64 @@ TEST_F(SwingingJoint, IsNoneByAStepAndARampAndNoise) {
   EXPECT_EQ(run(
                 5000, [&](double) { return noise(random); }, nothing),
             -1);
+}
+
+/// A joint of a scale whose drive tells no torque, and lets it come by a current loop of 0.2 ms.
+class LaggingDrive : public SwingingJoint {
+ protected:
+  /// As `run`, over 500 cycles; `command` from where it stood a cycle ago.
+  int follow(const std::function<double(double t)>& command, const std::function<double(double t)>& outside) {
+    constexpr double kMass = 0.035, kLagS = 0.0002;
+    constexpr int kSteps = 20;
+    faults_.raised.clear();
+    watch_.rest();
+    velocity_ = 0;
+    double torque = 0;
+    for (int i = 0; i < 500; ++i, t_ += kCycle) {
+      const double commanded = command(t_);
+      for (int k = 0; k < kSteps; ++k) {
+        torque += (commanded - torque) * (1 - std::exp(-kCycle / kSteps / kLagS));
+        velocity_ += (torque + outside(t_ + k * kCycle / kSteps)) / kMass * kCycle / kSteps;
+        position_ += velocity_ * kCycle / kSteps;
+      }
+      // The watch sees the effort beside the position that the next cycle reads.
+      watch_.step({.effort = std::exchange(shown_, commanded), .answer_delay = 1, .position = shown_position_},
+                  faults_);
+      shown_position_ = position_;
+      if (!faults_.raised.empty()) return i + 1;
+    }
+    return -1;
+  }
+  double shown_ = 0, shown_position_ = 0;
+};
+
+TEST_F(LaggingDrive, SwingsThoughNoTorqueIsTold) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int k = 0; k < 200; ++k) {
+    const double hz = 60 + 160 * share(random), from = share(random), began = t_;
+    const double amplitude = 100 + 200 * share(random);
+    const int found = follow([&](double t) { return amplitude * std::sin(kTurn * (hz * (t - began) + from)); },
+                             [&](double) { return -10 * velocity_; });
+    ASSERT_GT(found, 0) << hz << " Hz, " << amplitude << " N";
+    EXPECT_LE(found, 50 + 4000 / hz) << hz << " Hz, " << amplitude << " N";
+    EXPECT_EQ(faults_.raised[0].kind, ServoFault::Kind::Oscillation);
+  }
+}
+
+// Gains that are changed begin it with efforts that brake.
+TEST_F(SwingingJoint, IsFoundThoughABlowBeganIt) {
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int k = 0; k < 100; ++k) {
+    const double hz = 45 + 100 * share(random), blow = 500 + 1000 * share(random), began = t_;
+    const int found = run(
+        500,
+        [&](double t) { return 200 * std::sin(kTurn * hz * (t - began)) - (t - began < 0.012 ? 12 * velocity_ : 0); },
+        [&](double t) { return (t - began < 0.004 ? blow : 0) - 10 * velocity_; });
+    ASSERT_GT(found, 0) << hz << " Hz, " << blow << " N";
+    EXPECT_LE(found * kCycle, std::max(0.05, 4 / hz) + 0.025) << hz << " Hz, " << blow << " N";
+  }
 }
 
 TEST_F(SwingingJoint, WithoutABoundOfItsEffortIsNotWatched) {

@@ -1,5 +1,7 @@
 #include "servo/watch/response_watch.hpp"
 
+#include <numbers>
+
 #include "unit/motion/servo/recorded_faults.hpp"
 #include "unit/motion/servo/servo_fixture.hpp"
 
@@ -116,6 +118,40 @@ TEST_F(AnsweringJoint, StandsStillWhereItWasToGoAMillimetreOrLeavesItsBound) {
   EXPECT_NEAR(faults_.raised[0].value, 0.5, 0.01);
   EXPECT_EQ(go(0.01, 0.5, true), -1) << "it moves, by half";
   EXPECT_EQ(go(0, 0, false), -1) << "it is to stand";
+}
+
+/// A guide that seizes while a head hangs on it by 100 N: what holds it gives way, and so it swings there, and its
+/// effort about that weight.
+TEST_F(AnsweringJoint, StandsStillWhereItLeftItsBoundSwingingAgainstWhatHoldsIt) {
+  for (int phase = 0; phase < 16; ++phase) {
+    for (const double period : {7.0, 11.0, 17.0}) {
+      watch_.rest();
+      faults_.raised.clear();
+      joint_.max_following_error = 0.5;
+      double error = 0;
+      for (int i = -40; std::abs(error) <= 0.5; ++i) {
+        const double set = -0.033 * i;
+        const double swing = i < 0 ? set : 0.045 * std::sin(2 * std::numbers::pi * (i + phase * period / 16) / period);
+        error = set - swing;
+        watch_.step({.effort = 100 + 90 * error + (i < 0 ? 0 : 400 * swing),
+                     .position = swing,
+                     .position_set = set,
+                     .out_of_bound = std::abs(error) > 0.5},
+                    faults_);
+      }
+      if (faults_.raised.empty()) watch_.name_error(error, faults_);
+      EXPECT_EQ(faults_.raised[0].kind, Kind::StandsStill) << phase << ", " << period << " ms";
+    }
+  }
+}
+
+TEST_F(AnsweringJoint, LeavesItsBoundForNoReasonThatShowsWhereOneWordIsWrong) {
+  joint_.max_following_error = 0.5;
+  for (int i = 0; i < 60; ++i) watch_.step({.effort = 20, .position = 0.03 * i, .position_set = 0.03 * i}, faults_);
+  watch_.step({.effort = 20, .position = 1.2, .position_set = 1.8, .out_of_bound = true}, faults_);
+  watch_.name_error(0.6, faults_);
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_EQ(faults_.raised[0].kind, Kind::FollowingError);
 }
 
 }  // namespace

@@ -1,5 +1,8 @@
 #include "servo/watch/standing_watch.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "unit/motion/servo/recorded_faults.hpp"
 #include "unit/motion/servo/servo_fixture.hpp"
 
@@ -122,6 +125,45 @@ TEST_F(StandingJoint, IsBlockedWhereAllItsEffortForATenthOfASecondComesToNothing
   EXPECT_NEAR(cycles, 100, 3);
   ASSERT_FALSE(faults_.raised.empty());
   EXPECT_EQ(faults_.raised[0].kind, Kind::StandsStill);
+}
+
+TEST_F(StandingJoint, IsBlockedByAllThatItsLoopAsksForThoughItsDriveTellsLess) {
+  int cycles = 0;
+  while (faults_.raised.empty() && cycles < 1000) {
+    ++cycles;
+    watch_.step({.effort = 0.91 * 800, .commanded = 800, .position = cycles % 2 == 0 ? 0 : 1e-4}, faults_);
+  }
+  EXPECT_NEAR(cycles, 100, 3);
+}
+
+// At half a millimetre a minute its last digit goes on, to and fro, and rests for some milliseconds.
+TEST_F(StandingJoint, HasAFrozenEncoderWhereItCreptFromRestToRest) {
+  const auto creep = [](int i) { return 1e-4 * std::round(0.6 * (i / 8) + 0.9 * std::sin(2.1 * (i / 8))); };
+  for (int i = 0; i < 900; ++i) step(creep(i), 7.5e-6 * i, 100 + 0.3 * std::sin(0.8 * i));
+  const double stays = creep(899);
+  int cycles = 0;
+  double effort = 100;
+  while (faults_.raised.empty() && cycles < 3000) {
+    ++cycles;
+    effort = 100 + 0.05 * cycles;
+    step(stays, 7.5e-6 * (899 + cycles), effort);
+  }
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_EQ(faults_.raised[0].kind, Kind::EncoderFrozen);
+  EXPECT_LT(effort - 100, 0.031 * 800) << "before it is pushed through its friction";
+}
+
+// Its friction takes 80 N each way, and a digit of 10 um does not show how it gives way.
+TEST_F(StandingJoint, MayTurnRoundAgainstItsFrictionWithACoarseEncoder) {
+  double effort = 0, set = 0, position = 0;
+  for (int i = 0; i < 30'000; ++i) {
+    set = 0.4 * std::sin(2 * 3.14159 * i / 6000.0);
+    effort += 0.3 * (set - position) * 2;
+    effort = std::clamp(effort, -80.0, 80.0);
+    if (std::abs(effort) == 80) position = set;
+    step(0.01 * std::round(position / 0.01), set, effort);
+  }
+  EXPECT_THAT(faults_.raised, IsEmpty());
 }
 
 // As with `rmac load --soften 8` on a joint that is heavier than it is said to be.
