@@ -239,7 +239,7 @@ void check_law_module(const Task& task, const sdk::ModuleChoice& choice, const s
                       ModuleReport& report, const Tell& tell) {
   const auto check = [&](const std::shared_ptr<ServoLaw>& law) {
     WatchedServoLaw watched(law, watch);
-    ServoLawCase given{gains, gains, task.seed};
+    ServoLawCase given{gains, gains, task.seed, task.period_s};
     for (double& gain : given.other_gains) gain /= 2;
     if (!law->set_gains(given.other_gains)) given.other_gains = gains;
     const Checked kept = check_servo_law(watched, given);

@@ -1,4 +1,4 @@
-"""A joint and its loop, written for tests apart from what they test: mass, friction that sticks, a hanging load, a
+"""A joint and its loop, written for tests apart from what they test: mass, friction that sticks, a hanging load, cogging, a
 current loop, a quantised encoder, and the PID of docs/servo.md at 1 kHz."""
 
 import math
@@ -17,6 +17,8 @@ class Joint:
     load: float
     lag_s: float
     count: float
+    cogs: float = 0.0  # N, a sine of the place
+    pitch: float = 1.0  # mm
 
     @classmethod
     def of(cls, seed):
@@ -52,7 +54,7 @@ class Joint:
             acting, waiting = waiting, effort
             for _ in range(STEPS):
                 motor += (acting - motor) * follows
-                driving = motor - self.load
+                driving = motor - self.load - (self.cogs and self.cogs * math.sin(2 * math.pi * x / self.pitch))
                 if v == 0 and abs(driving) <= 1.2 * self.friction:
                     continue
                 pushed = v + driving / self.mass * dt

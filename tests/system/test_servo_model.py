@@ -85,6 +85,26 @@ class Identification(unittest.TestCase):
         self.assertLess(steps.max(), 1.025)
         self.assertGreater(steps.min(), 0.99)
 
+    def test_a_motor_that_cogs_is_told_from_mass_and_friction(self):
+        """By as much as it takes to speed up, every 5 to 16 mm, as a linear motor does, under a soft loop, which goes along with it; half of
+        them behind an encoder so coarse that the loop shakes."""
+        setpoints = list(excitation(travel=20, max_speed=100, acceleration=1000, jerk=10000))
+        for seed in range(1, 9):
+            chance = random.Random(seed)
+            joint = Joint.of(seed)
+            kg, share = 1000 * joint.mass, chance.choice([0.0, 0.05, 0.4])
+            joint.friction, joint.load = share * kg, 0.0
+            joint.cogs, joint.pitch = chance.uniform(0.5, 2.0) * kg, chance.uniform(5, 16)
+            if seed % 2 == 0:
+                joint.count = 0.01
+            positions, efforts = joint.follow(setpoints, (5.6 * kg, 63 * kg, 0.04 * kg))
+            with self.subTest(seed=seed, joint=joint):
+                found = servo_model.identify(np.arange(len(positions)) * PERIOD, np.array(positions), np.array(efforts),
+                                             wanted=np.array([place for place, _ in setpoints]))
+                self.assertAlmostEqual(found.mass / joint.mass, 1, delta=0.05)
+                self.assertAlmostEqual(found.friction, joint.friction, delta=0.03 * kg)
+                self.assertLess(abs(found.load), 0.5 * joint.cogs)  # of the part of a period that is left over
+
     def test_a_joint_that_rings_is_no_later_by_a_period_of_that(self):
         """Its acceleration and its effort swing together, and would so a period later: the first delay that explains them is right."""
         setpoints = np.array(list(excitation(travel=40, max_speed=90, acceleration=75, jerk=750)))

@@ -18,6 +18,11 @@ WINDOW_S = 0.015
 # Below this share of the fastest speed of the record friction is not what it is at speed.
 SLOW_SHARE = 0.02
 LONGEST_DELAY_S = 0.01
+# Where less than this is explained, something pulls by where the joint stands, as a motor's magnets and cables do, and a soft loop goes
+# along with it. The joint comes by each place several times, at other speeds and both ways: what is the same there each time is left out. So is what shakes motion
+# and effort alike by way of the loop.
+LITTLE_EXPLAINED = 0.999
+PLACES = 200  # along the way
 # A joint that rings explains itself as well a period of its resonance later: the earliest delay that leaves at most so
 # many times what the best one does.
 AS_GOOD = 1.5
@@ -57,10 +62,10 @@ def period_of(columns):
     return round(float(np.median(np.diff(columns["t_s"]))), 9)
 
 
-def identify(time, position, effort, period=None, delay=None, window_s=WINDOW_S):
+def identify(time, position, effort, period=None, delay=None, window_s=WINDOW_S, wanted=None):
     """The plant behind measured positions and efforts of every cycle. Efforts and motion pass the same filter, of
     `window_s`, so that it changes neither their ratio nor their delay; of all delays that one is right which leaves the
-    least, unless it is known."""
+    least, unless it is known. `wanted`: where the joint was sent, in every cycle."""
     period = period or float(np.median(np.diff(time)))
     window = max(5, int(round(window_s / period)) | 1)
     if len(position) < 20 * window:
@@ -84,20 +89,60 @@ def identify(time, position, effort, period=None, delay=None, window_s=WINDOW_S)
     matrix = np.column_stack([acceleration, velocity, np.sign(velocity), np.ones(len(position))])[used]
     index = np.arange(len(position), dtype=float)
 
-    def solve(delay):
-        right = np.interp(index - delay / period, index, filtered)[used]
-        found, *_ = np.linalg.lstsq(matrix, right, rcond=None)
-        return found, float(np.sum((matrix @ found - right) ** 2)), float(np.sum((right - right.mean()) ** 2))
+    def effort_at(delay):
+        return np.interp(index - delay / period, index, filtered)[used]
 
-    if delay is None:
-        grid = np.arange(0, LONGEST_DELAY_S, period)  # between two cycles noise is less, which makes valleys of its own
-        best = grid[_earliest_valley([solve(at)[1] for at in grid])]
-        delay = minimize_scalar(lambda d: solve(d)[1], bounds=(max(0, best - period), best + period), method="bounded").x
-    (mass, viscous, friction, load), left, total = solve(delay)
+    def at_best(delay, beside):
+        if delay is None:
+            grid = np.arange(0, LONGEST_DELAY_S, period)  # between two cycles noise is less, which makes valleys of its own
+            best = grid[_earliest_valley([_solve(matrix, effort_at(at), beside)[1] for at in grid])]
+            delay = minimize_scalar(lambda d: _solve(matrix, effort_at(d), beside)[1],
+                                    bounds=(max(0, best - period), best + period), method="bounded").x
+        return float(delay), *_solve(matrix, effort_at(delay), beside)
+
+    best, (mass, viscous, friction, load), left = at_best(delay, lambda values: values)
+    total = float(np.sum((effort_at(best) - effort_at(best).mean()) ** 2))
+    if left > (1 - LITTLE_EXPLAINED) * total:
+        beside = _beside_places(position, smooth, used)
+        best, (mass, viscous, friction, _), left = at_best(delay, beside)
+        if wanted is not None:
+            mass, viscous, friction = _as_sent(matrix, effort_at(best), savgol_filter(wanted, deriv=1, delta=period, **smooth)[used],
+                                               savgol_filter(wanted, deriv=2, delta=period, **smooth)[used], beside)
+        load = float(np.mean(effort_at(best) - matrix[:, :3] @ (mass, viscous, friction)))
     if not mass > 0:
         raise Unidentifiable("the accelerations do not tell its mass; give it more travel")
-    return Plant(float(mass), max(float(viscous), 0.0), max(float(friction), 0.0), float(load), float(delay),
+    return Plant(float(mass), max(float(viscous), 0.0), max(float(friction), 0.0), float(load), best,
                  1 - left / total)
+
+
+def _solve(matrix, right, beside):
+    """Numbers that leave the least of `right`, and how much; `beside` takes away what is not theirs."""
+    columns = np.column_stack([beside(column) for column in matrix.T])
+    wanted = beside(right)
+    found, *_ = np.linalg.lstsq(columns, wanted, rcond=None)
+    return found, float(np.sum((columns @ found - wanted) ** 2))
+
+
+def _as_sent(matrix, right, speed, acceleration, beside):
+    """Mass, viscous and sliding friction by what the joint was sent: what an encoder's error, or whatever shakes the joint, does to
+    motion and effort alike by way of the loop has no part in that (instrumental variables; Söderström and Stoica, System Identification,
+    1989, chapter 8)."""
+    instruments = np.column_stack([beside(column) for column in (acceleration, speed, np.sign(speed))])
+    columns = np.column_stack([beside(column) for column in matrix[:, :3].T])
+    return np.linalg.lstsq(instruments.T @ columns, instruments.T @ beside(right), rcond=None)[0]
+
+
+def _beside_places(position, smooth, used):
+    """What takes away all that goes by the place: a polygon over the way, which passes the filter as efforts do."""
+    place = (position - position.min()) / np.ptp(position) * PLACES
+    below = np.minimum(place.astype(int), PLACES - 1)
+    hats = np.zeros((len(position), PLACES + 1))
+    rows = np.arange(len(position))
+    hats[rows, below + 1] = place - below
+    hats[rows, below] = 1 - hats[rows, below + 1]
+    left, size, _ = np.linalg.svd(savgol_filter(hats, axis=0, **smooth)[used], full_matrices=False)
+    basis = left[:, size > 1e-3 * size[0]]
+    return lambda values: values - basis @ (basis.T @ values)
 
 
 def _earliest_valley(left):

@@ -168,7 +168,7 @@ def as_it_answers(columns, joint, bent):
     slowest = min((hz for hz, _ in bent.resonances()), default=np.inf)
     window = max(model.WINDOW_S, PERIODS_SMOOTHED / slowest)
     return model.identify(columns["t_s"], columns[f"a{joint + 1}"], columns[f"effort{joint + 1}"],
-                          delay=bent.delay_s + bent.lag_s, window_s=window)
+                          delay=bent.delay_s + bent.lag_s, window_s=window, wanted=columns[f"q{joint + 1}"])
 
 
 def check_mass(plant, bent, unit, sweep):
@@ -193,12 +193,22 @@ def swept(given):
     return [model.read_record(file, begin)[1] for file, begin in zip(given.sweep, given.sweep_begin)]
 
 
-def turn_of(head, columns, joint):
-    """What the joint goes in a turn of its motor, and why that is not known."""
+def motor_of(head, columns, joint):
+    """The motor that moves the joint, and why that is not known."""
     try:
-        return abs(creep.motor_of(head, columns, joint).turn), None
+        return creep.motor_of(head, columns, joint), None
     except (model.Unidentifiable, KeyError) as problem:
         return None, f"--creep: {problem}"
+
+
+def side_by_side(motor, head, columns, loop):
+    """What holds several motors of a joint in step, as device.json has it: each moves its share of the joint, under its share of the gains
+    as the joint does under all of them, and without an integral. None of one motor."""
+    if motor is None or len(motor.actuators) == 1:
+        return None
+    count = len(motor.actuators)
+    return {"motors": count, "apart": creep.apart(motor, head, columns),
+            "Gantry": {"Stiffness": rounded(loop.gains[0] / count), "Damping": rounded(loop.gains[2] / count)}}
 
 
 def rounded(value):
@@ -223,7 +233,7 @@ def crept(given, head, plant, bent, lead):
     parameters = {"lead_s": lead, "presliding": friction.presliding, "breakaway": friction.breakaway,
                   "stribeck_speed": friction.stribeck_speed}
     harmonics = [{"Order": order, "Cosine": rounded(cosine), "Sine": rounded(sine)} for order, cosine, sine in found.harmonics]
-    return {"friction": friction.sliding, "explained": found.explained,
+    return {"friction": friction.sliding, "friction_not_told": found.not_told, "explained": found.explained,
             "parameters": {**kept, **{key: [rounded(value)] for key, value in parameters.items()}},
             "motor": None if creep.no_cogging(motor) else {
                 "actuator": motor.actuators[0], "of": len(head["actuators"]), "rated_torque": motor.rated_torque,
@@ -240,7 +250,7 @@ def main():
     joint = head["joints"][given.joint]
     column = given.joint + 1
     try:
-        plant = model.identify(columns["t_s"], columns[f"a{column}"], columns[f"effort{column}"])
+        plant = model.identify(columns["t_s"], columns[f"a{column}"], columns[f"effort{column}"], wanted=columns[f"q{column}"])
         bent, response = measured_joint(given, plant)
         if response is not None:
             plant = as_it_answers(columns, given.joint, bent)
@@ -264,7 +274,7 @@ def main():
     told = {label: describe(loop, found) for label, loop, found in loops}
     friction = creeping["friction"] if creeping else plant.friction
     forward = [*proposed.gains, plant.viscous, plant.mass, friction, plant.load]
-    turn, no_creep = turn_of(head, columns, given.joint)
+    motor, no_creep = motor_of(head, columns, given.joint)
     print(json.dumps({
         "joint": joint["name"], "unit": joint["unit"], "law": joint["law"], "plant": model.as_json(plant),
         "max_speed": joint["max_speed"], "max_effort": joint["max_effort"], "parameters": joint["parameters"],
@@ -276,7 +286,8 @@ def main():
         "sweep_gains": gains_to_sweep(before, plant, bent.period) if before else None,
         "filters_in_force": filters_of(before) if before else None,
         "pid_gains": list(proposed.gains), "feedforward_feedback_gains": forward,
-        "lead_s": lead, "turn": turn, "no_creep": no_creep, "creep": creeping,
+        "lead_s": lead, "turn": abs(motor.turn) if motor else None, "no_creep": no_creep, "creep": creeping,
+        "side_by_side": side_by_side(motor, head, columns, proposed),
         "apply": {3: list(proposed.gains), 7: forward}.get(len(joint["gains"]))}))
     return 0
 

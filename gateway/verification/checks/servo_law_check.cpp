@@ -14,9 +14,9 @@ namespace {
 constexpr double kLimit = 100;
 /// Beyond what gains make of the inputs here, so that the limit does not hide or make a jump.
 constexpr double kFarLimit = 1e12;
-/// Cycles at the limit: more than a useful integral needs to get there.
-constexpr int kSaturated = 2000;
-constexpr int kMostLeaving = 20'000;
+/// At the limit: more than a useful integral needs to get there.
+constexpr double kSaturated_s = 2;
+constexpr double kMostLeaving_s = 20;
 
 NamedNumbers named_input(const char* name, const ServoInput& input) {
   return {
@@ -30,7 +30,8 @@ class ServoLawCheck {
       : law_(law),
         gains_(given.gains),
         other_gains_(given.other_gains),
-        seed_(static_cast<std::mt19937::result_type>(given.seed)) {
+        seed_(static_cast<std::mt19937::result_type>(given.seed)),
+        rest_{.period_s = given.period_s} {
     if (other_gains_.empty()) other_gains_ = gains_;
   }
 
@@ -67,14 +68,16 @@ class ServoLawCheck {
     return {};
   }
 
-  static ServoInput random_input(std::mt19937& random, double size) {
+  [[nodiscard]] ServoInput random_input(std::mt19937& random, double size) const {
     std::uniform_real_distribution<> value(-size, size);
     return {.position_setpoint = value(random),
             .velocity_setpoint = value(random),
             .acceleration_setpoint = value(random),
             .position = value(random),
-            .velocity = value(random)};
+            .velocity = value(random),
+            .period_s = rest_.period_s};
   }
+  [[nodiscard]] int cycles(double time_s) const { return static_cast<int>(std::lround(time_s / rest_.period_s)); }
   static double random_effort(std::mt19937& random) {
     return std::uniform_real_distribution<>(-kLimit, kLimit)(random);
   }
@@ -82,7 +85,7 @@ class ServoLawCheck {
   Checked check_bounded() {
     std::mt19937 random(seed_);
     law_.set_effort_limit(kLimit);
-    law_.engage({}, 0);
+    law_.engage(rest_, 0);
     for (int i = 0; i < 10000; ++i) {
       const ServoInput input = random_input(random, i % 2 == 0 ? 1e-3 : 1e6);
       const double effort = law_.update(input);
@@ -123,9 +126,9 @@ class ServoLawCheck {
     const double resting = law_.resting_effort();
     if (!std::isfinite(resting)) return found("resting effort", fmt::format("it is {}", resting), 0, {});
     law_.set_effort_limit(std::abs(resting) + kLimit);
-    law_.engage({}, resting);
+    law_.engage(rest_, resting);
     for (int i = 0; i < 1000; ++i) {
-      if (const double effort = law_.update({}); !(std::abs(effort - resting) <= 1e-6)) {
+      if (const double effort = law_.update(rest_); !(std::abs(effort - resting) <= 1e-6)) {
         return found("resting effort", fmt::format("it is {}, but at rest the law puts out {}", resting, effort), i,
                      {});
       }
@@ -188,27 +191,31 @@ class ServoLawCheck {
   /// Cycles at its limit that an error takes to leave it the other way, after so many cycles at it; the most that are
   /// looked at when it does not. An error that does not take it to its limit says nothing.
   std::optional<int> cycles_to_leave(int saturated, double error) {
-    const ServoInput ahead{.position_setpoint = error}, behind{.position_setpoint = -error};
+    ServoInput ahead = rest_, behind = rest_;
+    ahead.position_setpoint = error;
+    behind.position_setpoint = -error;
     law_.set_effort_limit(kLimit);
-    law_.engage({}, 0);
+    law_.engage(rest_, 0);
     double held = 0;
     for (int i = 0; i < saturated; ++i) held = law_.update(ahead);
     if (std::abs(held) < kLimit) return {};
-    for (int i = 0; i < kMostLeaving; ++i) {
+    const int most = cycles(kMostLeaving_s);
+    for (int i = 0; i < most; ++i) {
       if (law_.update(behind) != held) return i;
     }
-    return kMostLeaving;
+    return most;
   }
 
   /// However long the output was at its limit, it leaves it as soon.
   Checked check_windup() {
+    const int saturated = cycles(kSaturated_s);
     for (const double size : {0.01, 0.1, 1.0, 10.0}) {
       for (const double error : {size, -size}) {
-        const auto soon = cycles_to_leave(kSaturated, error), late = cycles_to_leave(10 * kSaturated, error);
+        const auto soon = cycles_to_leave(saturated, error), late = cycles_to_leave(10 * saturated, error);
         if (!soon || !late || *late <= *soon + 1) continue;
         return found("windup",
-                     fmt::format("at its limit for {} cycles it leaves it after {}, for {} cycles after {}", kSaturated,
-                                 *soon, 10 * kSaturated, *late),
+                     fmt::format("at its limit for {} cycles it leaves it after {}, for {} cycles after {}", saturated,
+                                 *soon, 10 * saturated, *late),
                      -1, {named("error", std::array{error})});
       }
     }
@@ -246,6 +253,7 @@ class ServoLawCheck {
   ServoLaw& law_;
   std::vector<double> gains_, other_gains_;
   std::mt19937::result_type seed_;
+  ServoInput rest_;
 };
 
 }  // namespace

@@ -32,6 +32,7 @@ enum class Defect {
   HidesNoNumber,
   KeepsNoNumber,
   DriftsAtRest,
+  TakesItsCycleForAMillisecond,
 };
 
 /// A PI law that keeps every rule but one.
@@ -63,7 +64,8 @@ class Law final : public ServoLaw {
     error_ = input.position_setpoint - input.position;
     const double within = defect_ == Defect::BeyondItsLimitOnEngaging ? effort : std::clamp(effort, -limit_, limit_);
     engaged_ = defect_ == Defect::BeyondItsLimitOnEngaging;
-    integral_ = within - kp_ * error_ - ki_ * error_ * input.period_s;
+    const double period_s = defect_ == Defect::TakesItsCycleForAMillisecond ? 0.001 : input.period_s;
+    integral_ = within - kp_ * error_ - ki_ * error_ * period_s;
     if (defect_ == Defect::JumpsOnEngaging) integral_ = 20;
   }
   double update(const ServoInput& input) noexcept override {
@@ -88,14 +90,28 @@ class Law final : public ServoLaw {
   bool engaged_ = false;
 };
 
-verifier::Checked check(Defect defect) {
+verifier::Checked check(Defect defect, double period_s = 0.001) {
   Law law(defect);
-  return check_servo_law(law, {{1000, 50000}, {300, 1000}});
+  return check_servo_law(law, {{1000, 50000}, {300, 1000}, 1, period_s});
 }
 
+constexpr std::array kPeriods{0.000125, 0.00025, 0.0005, 0.001, 0.002};
+
 TEST(LawsConformance, FindsNothingWhereNothingIsWrong) {
-  const auto checked = check(Defect::None);
-  EXPECT_TRUE(checked) << to_string(checked.error());
+  for (const double period_s : kPeriods) {
+    const auto checked = check(Defect::None, period_s);
+    EXPECT_TRUE(checked) << period_s << ": " << to_string(checked.error());
+  }
+}
+
+TEST(LawsConformance, IsHeldAtThePeriodThatTheLawIsToRunIn) {
+  for (const double period_s : kPeriods) {
+    const auto checked = check(Defect::TakesItsCycleForAMillisecond, period_s);
+    ASSERT_EQ(checked.has_value(), period_s == 0.001) << period_s;
+    if (!checked) {
+      EXPECT_EQ(checked.error().check, "engaging") << period_s;
+    }
+  }
 }
 
 TEST(ExchangeableLaw, KeepsWhatItsLawKeeps) {

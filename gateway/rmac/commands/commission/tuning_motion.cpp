@@ -136,6 +136,12 @@ Result<> put_sweeping_law(Connection& connection, int joint, const Json& found, 
       {"sweep_effort", sweep.effort},   {"sweep_from_hz", sweep.from_hz},   {"sweep_to_hz", sweep.to_hz},
       {"sweep_full_hz", sweep.full_hz}, {"sweep_period_s", sweep.period_s}, {"sweep_periods", sweep.sweeps},
       {"sweep_stretches", 2},           {"load", found["load_known"]}};
+  // A joint that was tuned before has a notch where it swings: what passes that is lost in noise there.
+  const Json& filters = found["filters_in_force"];
+  if (filters["LowPass"] > 0) parameters["sweep_low_pass_hz"] = filters["LowPass"];
+  for (const Json& notch : filters["Resonances"]) {
+    for (const char* key : {"Frequency", "Damping", "Width"}) parameters["sweep_notches"].push_back(notch[key]);
+  }
   for (const char* kept : {"derivative_filter_s", "rest_band"}) {
     if (found["parameters"].contains(kept)) parameters[kept] = found["parameters"][kept];
   }

@@ -15,10 +15,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Where less of creeping is explained, the joint still sticks under what was found. Of a joint without friction
-/// nothing but noise may be left to explain.
-constexpr double kUnderstood_percent = 98;
-
 void print_filters(const Json& filters) {
   for (const Json& notch : filters["Resonances"]) {
     fmt::print("  notch at {:.1f} Hz, damping {:.3g}, width {:.3g}\n", notch["Frequency"].get<double>(),
@@ -31,7 +27,12 @@ void print_filters(const Json& filters) {
 void print_creep(const Json& found, const char* way, const char* effort) {
   const Json &creep = found["creep"], &motor = creep["motor"], &parameters = creep["parameters"];
   const auto number = [&](const char* key) { return parameters[key][0].get<double>(); };
-  if (creep["friction"] == 0) {
+  if (creep["friction_not_told"] > 0) {
+    fmt::print(
+        "friction is not told: bristles that slide at {:.3g} {} do not explain enough; it is something else here, as "
+        "behind a soft belt or play, and none is proposed: see what `rmac measure-following` shows\n",
+        creep["friction_not_told"].get<double>(), effort);
+  } else if (creep["friction"] == 0) {
     fmt::print("friction: none\n");
   } else {
     fmt::print(
@@ -60,12 +61,19 @@ void print_creep(const Json& found, const char* way, const char* effort) {
         fmt::join(orders, ", "), fmt::join(places, ", "));
   }
   if (!motor.is_null() && harmonics.empty() && hidden.empty()) fmt::print("cogging: none\n");
-  const double explained = 100 * creep["explained"].get<double>();
-  fmt::print("the model explains {:.1f} % of what creeping takes{}\n", explained,
-             creep["friction"] > 0 && explained < kUnderstood_percent
-                 ? ": friction is something else here, as behind a soft belt or play; see "
-                   "what `rmac measure-following` shows before you keep it"
-                 : "");
+  fmt::print("the model explains {:.1f} % of what creeping takes\n", 100 * creep["explained"].get<double>());
+}
+
+/// Of a joint that several motors move side by side, which are held in step beside the law.
+void print_gantry(const Json& several, const char* way) {
+  if (several.is_null()) return;
+  const Json& gantry = several["Gantry"];
+  fmt::print(
+      "{} motors move it, up to {:.2g} {} out of step in the swings; what holds them in step as stiffly as this loop "
+      "holds the joint, for the Gantry of the joint in device.json beside its MaxSkew (--apply does not set it): "
+      "\"Stiffness\": {}, \"Damping\": {}\n",
+      several["motors"].get<int>(), several["apart"].get<double>(), way, gantry["Stiffness"].dump(),
+      gantry["Damping"].dump());
 }
 
 }  // namespace
@@ -106,6 +114,7 @@ void print_tuning(const Json& found, const std::string& picture) {
   print_filters(filters);
   fmt::print("for DMAC_FEEDFORWARDFEEDBACK_CONTROL: {} with lead_s {:.4f}\n{}\n",
              list_text(found["feedforward_feedback_gains"]), found["lead_s"].get<double>(), picture);
+  print_gantry(found["side_by_side"], way);
   if (crept) {
     fmt::print(
         "to keep it, write into the joint in device.json: \"ServoControlLaw\": {}, \"Gains\": {}, "

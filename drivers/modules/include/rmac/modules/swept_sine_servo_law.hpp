@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "rmac/modules/filter_inverse.hpp"
 #include "rmac/modules/pid_feedback.hpp"
 #include "rmac/modules/swept_sine.hpp"
 #include "rmac/motion/ports/servo_law.hpp"
@@ -13,11 +14,13 @@
 namespace rmac::modules {
 
 /// The PID law with a swept sine on top of its effort, for measuring what a joint answers (`rmac tune`). Without
-/// `sweep_effort` it is the PID law. The sum stays within the effort limit.
+/// `sweep_effort` it is the PID law. The sum stays within the effort limit. The sine goes before the filters that it is
+/// told of as they would have it, so that their drive gets it whole also where they keep the feedback from a resonance.
 class SweptSineServoLaw final : public ServoLaw {
  public:
-  SweptSineServoLaw(const ErrorSignal::Parameters& signal, const SweptSine::Parameters& sweep, double load) noexcept
-      : feedback_(signal), sweep_(sweep), load_(load) {}
+  SweptSineServoLaw(const ErrorSignal::Parameters& signal, const SweptSine::Parameters& sweep,
+                    const FilterInverse::Parameters& filters, double load)
+      : feedback_(signal), sweep_(sweep), inverse_(filters), load_(load) {}
 
   [[nodiscard]] std::span<const GainInfo> gains() const noexcept override { return kGains; }
 
@@ -37,7 +40,7 @@ class SweptSineServoLaw final : public ServoLaw {
 
   [[nodiscard]] double update(const ServoInput& input) noexcept override {
     if (!is_finite(input)) return std::numeric_limits<double>::quiet_NaN();
-    return feedback_.update(input, load_ + sweep_.step(input), limit_);
+    return feedback_.update(input, load_ + inverse_.step(sweep_.step(input), input.period_s), limit_);
   }
 
  private:
@@ -45,26 +48,30 @@ class SweptSineServoLaw final : public ServoLaw {
 
   PidFeedback feedback_;
   SweptSine sweep_;
+  FilterInverse inverse_;
   double load_;
   double limit_ = 0;
 };
 
 /// Makes a `SweptSineServoLaw`; parameters of `PidServoLawFactory`, and `sweep_effort`, `sweep_from_hz`, `sweep_to_hz`,
-/// `sweep_full_hz`, `sweep_period_s`, `sweep_periods` and `sweep_stretches`.
+/// `sweep_full_hz`, `sweep_period_s`, `sweep_periods`, `sweep_stretches`, `sweep_notches` and `sweep_low_pass_hz`.
 struct SweptSineServoLawFactory {
   static ServoLaw* create(sdk::Parameters parameters, char* error, std::size_t error_size) noexcept {
     if (!sdk::are_known_numbers(parameters,
                                 {"derivative_filter_s", "rest_band", "load", "sweep_effort", "sweep_from_hz",
-                                 "sweep_to_hz", "sweep_full_hz", "sweep_period_s", "sweep_periods", "sweep_stretches"},
+                                 "sweep_to_hz", "sweep_full_hz", "sweep_period_s", "sweep_periods", "sweep_stretches",
+                                 "sweep_notches", "sweep_low_pass_hz"},
                                 error, error_size))
       return nullptr;
     ErrorSignal::Parameters signal;
     SweptSine::Parameters sweep;
+    FilterInverse::Parameters filters;
     double load = 0;
     if (!ErrorSignal::read(parameters, signal, error, error_size)) return nullptr;
     if (!SweptSine::read(parameters, sweep, error, error_size)) return nullptr;
+    if (!FilterInverse::read(parameters, filters, error, error_size)) return nullptr;
     if (!sdk::read_number(parameters, kLoad, load, error, error_size)) return nullptr;
-    return new SweptSineServoLaw(signal, sweep, load);
+    return new SweptSineServoLaw(signal, sweep, filters, load);
   }
 };
 
