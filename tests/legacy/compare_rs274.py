@@ -194,6 +194,9 @@ class Program:
             self.at = [a + o for a, o in zip(self.at, self.offset)]
             self.offset = [0.0, 0.0, 0.0]
             return
+        if self.random.random() < 0.4:
+            self.local()
+            return
         words = []
         for axis in self.random.sample(range(3), self.random.randint(1, 3)):
             value = self.said(self.random.uniform(-20, 20))
@@ -201,6 +204,15 @@ class Program:
             self.offset[axis] += self.at[axis] - value
             self.at[axis] = value
         self.write("G92 " + " ".join(words))
+
+    def local(self):
+        words = []
+        for axis in self.random.sample(range(3), self.random.randint(1, 3)):
+            value = self.said(self.random.uniform(-20, 20))
+            words.append("XYZ"[axis] + "%.4f" % (value / self.unit))
+            self.at[axis] += self.offset[axis] - value
+            self.offset[axis] = value
+        self.write("G52 " + " ".join(words))
 
     def switch(self):
         self.write(self.random.choice(["M3 S1000", "M4 S500", "M5", "M8", "M9", "G4 P0.25", "S1234", "M0", "M1", "m3 s200 m8"]))

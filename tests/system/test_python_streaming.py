@@ -224,6 +224,19 @@ class PythonStreamingTest(unittest.TestCase):
         with client.authority():
             client.run([rmac.MoveTo((2, 0, 0))]).wait()
 
+    def test_a_program_that_was_sent_in_part_is_not_told_as_not_sent(self):
+        client = self.start()
+
+        def program():
+            yield from (rmac.MoveTo((x, 0, 0)) for x in range(1, 10))
+            client.close()
+            yield rmac.MoveTo((0, 0, 0))
+
+        with self.assertRaises(rmac.Interrupted) as lost:
+            client.run(program()).wait()
+        self.assertNotIn("nothing of this was sent", str(lost.exception))
+        self.assertRegex(str(lost.exception), "closed; [0-9]+ moves of the program were known to be done, [0-9]+ taken; reconnect, then resume")
+
     def test_what_could_not_be_taken_up_is_not_lost_and_is_taken_up_once(self):
         client = self.start()
         interrupted = self.interrupt(client, [rmac.MoveTo((0, 0, 0)), rmac.Line((0, 0, 0), (40, 0, 0)), rmac.Line((40, 0, 0), (40, 5, 0))], 0)

@@ -162,7 +162,7 @@ void Passages::copy(Arguments& arguments) {
   const int number = arguments.integer("the number of its INDEX", kMostNumber);
   const auto found = indexed_.find(number);
   if (found == indexed_.end() || found->second.depth != depth_)
-    refuse(place, fmt::format("no INDEX/{} before this COPY", number));
+    refuse(place, fmt::format("no INDEX/{} before this COPY that has none yet; write one for each COPY", number));
   Coordinates& coordinates = interpreter_.coordinates();
   const Placement step = step_of(arguments, coordinates);
   const int copies = arguments.done() ? 1 : arguments.integer("the number of copies", kMostCopies);

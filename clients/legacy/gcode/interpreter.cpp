@@ -262,6 +262,7 @@ void Interpreter::act_once(Block& block) {
   if (!once) return;
   if (once->number == 280 || once->number == 300) {
     if (block.has_any("ABC") && !block.has_any("XYZ")) return;  // these alone are what the tool's axis is asked for
+    tool_axis_.require_axes_of_machine(block, once->place);
     doubts_.reach_reference(block);
     return motions_.reference(block, *once);
   }
@@ -295,7 +296,7 @@ void Interpreter::move(Block& block) {
 void Interpreter::move_by(Block& block, int code, std::size_t place) {
   const int before = std::exchange(modes_.motion, code);
   if (code <= 30) modes_.interpolation = code;
-  if (!block.once(530)) tool_axis_.require_coordinates_of_part(place);
+  tool_axis_.require_coordinates(block, place);
   doubts_.require_whole(block, code, rules_.cycles, place);
   if (code == 0 || code == 10) return motions_.straight(block, code == 0, place);
   if (code == 20 || code == 30) return motions_.arc(block, code == 30, place);

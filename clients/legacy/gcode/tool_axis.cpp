@@ -95,6 +95,35 @@ void ToolAxis::require_coordinates_of_part(std::size_t place) const {
   refuse_coordinates(place);
 }
 
+/// Axes that turn the tool leave those of the machine as they lie to the part, and a table turns them with the part. A
+/// tilted plane and vectors say how the tool points, but not where the axes stand then.
+void ToolAxis::require_axes_of_machine(const Block& block, std::size_t place) const {
+  constexpr double kSame = 1e-4;  // of angles that posts round to 0.001 degree
+  const bool is_turned = legacy::length(legacy::difference(mover_.axis(), legacy::unit_axis(2))) > kSame;
+  if (is_turned && options_.rotary.empty())
+    refuse(place,
+           "the tool is turned, and whether that turned the machine's axes away from the part is not known here; give "
+           "--rotary C,A with the axes that turn the tool, and --rotary-centre where they turn a table");
+  const bool has_table =
+      std::ranges::any_of(options_.rotary, [](const auto& axis) { return axis.centre_mm.has_value(); });
+  if (!has_table || !turntable_.carries(angles_)) {
+    const bool beside_z = block.has_any("XY") || !block.has('Z');
+    const auto moves_axes = [this, beside_z](const RotaryAxis& axis) {
+      const bool stands = angles_.at(index_of(axis.letter)).value_or(0) == 0;
+      return axis.centre_mm.has_value() && !stands && (axis.letter != 'C' || beside_z);
+    };
+    if (std::ranges::none_of(options_.rotary, moves_axes)) return;
+    refuse(place,
+           "a table is turned below a tilted tool, and how the machine's axes lie to the part then is not taken; turn "
+           "the table back before this, or write the way as G0 under G43.4");
+  }
+  if (legacy::length(legacy::difference(mover_.axis(), turn_.z)) <= kSame) return;
+  refuse(
+      place,
+      "the tool does not point as the table's angles have it, so how the machine's axes lie to the part is not known "
+      "here; write A, B and C before G68.2, as G53.1 turns them, and see whether --rotary has their sense");
+}
+
 void ToolAxis::refuse_coordinates(std::size_t place) {
   refuse(
       place,

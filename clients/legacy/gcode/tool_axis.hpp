@@ -34,11 +34,18 @@ class ToolAxis {
   void follow(std::size_t place) {
     if (!at_reference_) turntable_.follow(angles_, place);
   }
-  /// Throws a Refusal where X, Y and Z are not those of the part: A, B and C turned that below the tool, or away from
-  /// it.
-  void require_coordinates_of_part(std::size_t place) const;
+  /// Throws a Refusal where what X, Y and Z of a motion are, of the part, or under G53 of the machine, is not known.
+  void require_coordinates(const Block& block, std::size_t place) const {
+    return block.once(kInMachine) ? require_axes_of_machine(block, place) : require_coordinates_of_part(place);
+  }
+  /// Throws a Refusal where G28, G30 or G53 go along axes of the machine, and how those lie to the part is not known.
+  void require_axes_of_machine(const Block& block, std::size_t place) const;
 
  private:
+  static constexpr int kInMachine = 530;
+
+  /// Throws a Refusal where A, B and C turned the part below the tool, or away from it.
+  void require_coordinates_of_part(std::size_t place) const;
   void read_angles(Block& block, int motion);
   void leave_for_reference(const Block& block);
   void read_vector(Block& block, int motion);

@@ -61,6 +61,17 @@ void shift_coordinates(gcode::Block& block, const gcode::Code& code, const gcode
   coordinates.set_g92(shift);
 }
 
+/// G52 writes what G92 keeps, as LinuxCNC has it: absolute, under G91 too, and each axis in the place of what it had.
+void set_local(gcode::Block& block, const gcode::Code& code, const gcode::Modes& modes,
+               gcode::Coordinates& coordinates) {
+  if (!block.has_any("XYZ")) refuse(code.place, "G52 needs X, Y or Z");
+  gcode::Point shift{coordinates.g92(0), coordinates.g92(1), coordinates.g92(2)};
+  for (std::size_t axis = 0; axis < shift.size(); ++axis) {
+    if (const gcode::Word* word = block.find(gcode::kAxisLetters.at(axis))) shift.at(axis) = modes.mm(*word);
+  }
+  coordinates.set_g92(shift);
+}
+
 }  // namespace
 
 std::size_t system_of(gcode::Block&, const gcode::Code& code) {
@@ -74,7 +85,9 @@ gcode::SystemName system_name(std::size_t system) {
 
 void set_coordinates(gcode::Block& block, const gcode::Code& code, const gcode::Modes& modes,
                      gcode::Coordinates& coordinates) {
-  if (code.number == 100) return set_system(block, modes, coordinates, code.place);
+  constexpr int kOffsets = 100, kLocal = 520;
+  if (code.number == kOffsets) return set_system(block, modes, coordinates, code.place);
+  if (code.number == kLocal) return set_local(block, code, modes, coordinates);
   shift_coordinates(block, code, modes, coordinates);
 }
 

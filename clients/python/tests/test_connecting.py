@@ -20,6 +20,9 @@ class ConnectingTest(unittest.TestCase):
         self.assertEqual(parse_address("unix:/run/rmac/rmacd.sock").path, "/run/rmac/rmacd.sock")
         for wrong in ("", "a:b:c", "host:", "host:0", "host:65536", "unix:", "::1"):
             self.assertRaises(rmac.CannotConnect, parse_address, wrong)
+        for wrong in (None, 7402, ("localhost", 7402), pathlib.Path("/run/rmac/rmacd.sock"), b"host:1"):
+            with self.assertRaisesRegex(rmac.CannotConnect, "is no address: give it as text"):
+                rmac.connect(wrong)
 
     def test_a_wrong_path_is_told_as_such(self):
         with self.assertRaisesRegex(rmac.CannotConnect, "^unix:/nowhere: there is no such file"):

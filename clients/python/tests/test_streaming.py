@@ -139,6 +139,9 @@ class StreamTest(unittest.TestCase):
             for _ in range(5):
                 stream.next_batch()
 
+    def test_what_is_no_program_is_told(self):
+        with self.assertRaisesRegex(InvalidValue, "5 is no program: give moves"):
+            Stream(5, MachineModel(random.Random(1), 10).state(), 10)
 
     def test_a_move_that_no_line_can_hold_is_told_and_batches_stay_small(self):
         state = MachineModel(random.Random(1), 1000).state()

@@ -268,7 +268,7 @@ std::size_t Flow::program_of(int number, std::size_t place) const {
                               "to be written behind the end of the main program",
                               number, gcode::kProbing));
   refuse(place, fmt::format("O{0} is not in this file, and no other is read; write O{0} ... M99 behind the end of the "
-                            "main program",
+                            "main program, before the second %",
                             number));
 }
 

@@ -60,6 +60,7 @@ constexpr auto kG = std::to_array<GCode>({
     {431, GGroup::Length, "tool lengths are those of the appliance's tool table (rmac tools); write G43 H"},
     {432, GGroup::Length, "a second tool length is not taken; put it into the appliance's tool table (rmac tools)"},
     {490, GGroup::Length, {}},
+    {520, GGroup::Once, {}},
     {530, GGroup::Once, {}},
     {540, GGroup::System, {}},
     {550, GGroup::System, {}},

@@ -71,6 +71,8 @@ def tune(connected: socket.socket) -> None:
 
 
 def parse_address(text: str) -> Address:
+    if not isinstance(text, str):
+        raise CannotConnect(f"{text!r} is no address: give it as text, as \"host:{DEFAULT_PORT}\" or \"unix:/path\"")
     if text.startswith("unix:"):
         path = text.removeprefix("unix:")
         if not path:

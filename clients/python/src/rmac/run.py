@@ -128,13 +128,13 @@ class Run:
         try:
             self._client.send_batch(batch, self)
         except ConnectionLost as error:
-            self._stream.lost(error)
+            self._stream.lost(self._client.lost or error)
 
     def _confirm(self) -> None:
         try:
             self._stream.confirm(self._client.state())
         except ConnectionLost as error:
-            return self._stream.lost(error)
+            return self._stream.lost(self._client.lost or error)
         if self._stream.asks_state:
             with self._changed:
                 self._changed.wait(1 / STATE_RATE_HZ)

@@ -113,7 +113,7 @@ class Run:
                     await asyncio.sleep(1 / STATE_RATE_HZ)
             elif not (self._stream.ended or self._stream.ledger.finished):
                 await self._changed.wait()
-        except RmacError as error:
+        except RmacError:
             if self._client.lost is None:
                 raise
-            self.set_exception(error)
+            self.set_exception(self._client.lost)

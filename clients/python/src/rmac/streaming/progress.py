@@ -36,7 +36,7 @@ class Interrupted(ConnectionLost):
     is sent again by itself: `client.resume` takes the program up where the machine stands, once."""
 
     def __init__(self, cause: RmacError, ledger: Ledger, remaining: Iterator[Any]) -> None:
-        super().__init__(f"{cause}; {ledger.done} moves of the program were known to be done, {ledger.taken} taken")
+        super().__init__(f"{cause}; {ledger.done} moves of the program were known to be done, {ledger.taken} taken; reconnect, then resume takes it up")
         self.ledger = ledger
         self._remaining = remaining
         self.sent: tuple[list[Any], list[Any]] | None = None  # and the first one that was not, once asked for

@@ -37,6 +37,8 @@ class Stream:
         self.failure: RmacError | None = None
         self._first_index = first_index
         self.begin(state, first_id)
+        if not isinstance(moves, Iterable):
+            raise InvalidValue(f"{moves!r} is no program: give moves, in a list or from a generator")
         self._source: Iterator[Any] = iter(moves)
         self._exhausted = False
         self._capacity = capacity

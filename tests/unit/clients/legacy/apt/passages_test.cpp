@@ -53,6 +53,8 @@ TEST(AptCopy, KeepsTheLineOfEachStatement) {
 
 TEST(AptCopy, ThatIsNotWholeIsRefused) {
   EXPECT_THAT(refusal_of(program_of("COPY/1,SAME,1")), StartsWith("5:1: no INDEX/1 before this COPY"));
+  EXPECT_THAT(refusal_of(program_of("INDEX/1\nGOTO/1,0,0\nCOPY/1,SAME,1\nCOPY/1,SAME,1")),
+              StartsWith("8:1: no INDEX/1 before this COPY that has none yet"));
   EXPECT_THAT(refusal_of(program_of("INDEX/1\nGOTO/1,1,1")), StartsWith("5:1: INDEX/1 has no COPY"));
   EXPECT_THAT(refusal_of(program_of("INDEX/1\nINDEX/1")), HasSubstr("has no COPY yet"));
   EXPECT_THAT(refusal_of(program_of("INDEX/1\nCOPY/1,MODIFY,2")), HasSubstr("taken with SAME, TRANSL"));

@@ -255,7 +255,9 @@ TEST(FanucStatement, SaysWhatIsMissing) {
            {"G65 A1.", "G65 and G66 need P"},
            {"G65 P7 A1. A2.", "two A words in one call"},
            {"G65 P7 G0", "another G code beside G65 or G66"},
-           {"G65 P8", "O8 is not in this file, and no other is read"},
+           {"G65 P8",
+            "O8 is not in this file, and no other is read; write O8 ... M99 behind the end of the main "
+            "program, before the second %"},
            {"G65 P9700", "Makers of probes have theirs from O9700 on"},
            {"G65 P9999", "Makers of probes have theirs from O9700 on"},
            {"G65 P9023", "Makers of probes have theirs from O9700 on"},

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <numbers>
+
 #include "unit/clients/legacy/fanuc/imported.hpp"
 
 namespace rmac::fanuc {
@@ -164,6 +166,43 @@ TEST(FanucToolAxis, LeavesXYZToTheMachineWhereNothingSaysWhereThePartIs) {
       refusal_of(program_of("G68.2 X0 Y0 Z0 I0 J90. K0\nG53.1\nG69\nG91 G28 Z0\nG90 G0 A0. C0\nX0 Y0 Z50."), options),
       "taken")
       << "the ways out of it";
+}
+
+TEST(FanucTilt, LeavesTheMachinesAxesAsTheyLieWhereTheToolTurned) {
+  Options options;
+  options.rotary = {{'C', 1}, {'A', 1}};
+  options.reference_mm = {{0, 0, 200}};
+  const std::string tilted = "G68.2 X0 Y0 Z0 I0 J30. K0\nG53.1\nG0 X0 Y0 Z50.\nG69\n";
+  for (const char* up : {"G91 G28 Z0", "G0 G53 Z0"}) {
+    const auto end = ends_of(tilted + up, options).back();
+    EXPECT_THAT(end, near(0, -25, 200)) << up;
+    EXPECT_THAT(refusal_of(program_of(tilted + up), {.reference_mm = options.reference_mm}),
+                HasSubstr("give --rotary C,A"))
+        << "along the tool, where it is the table that turned: " << up;
+  }
+}
+
+TEST(FanucTilt, TakesTheMachinesAxesAlongWhereATableTurned) {
+  Options options;
+  options.rotary = {{'C', 1, {{0, 0, -20}}}, {'A', 1, {{0, 0, -20}}}};
+  options.reference_mm = {{0, 0, 200}};
+  const std::string tilted = "G68.2 X0 Y0 Z0 I0 J30. K0\nG53.1\nG0 X0 Y0 Z50.\nG69\nG91 G28 Z0";
+  // Up along the tool, to 220 above the axes that are 20 below the part's zero.
+  const double up = 220 - 20 * std::cos(std::numbers::pi / 6);
+  EXPECT_THAT(ends_of("G0 A30. C0\n" + tilted, options).back(), near(0, -up / 2, up * std::cos(std::numbers::pi / 6)));
+  const auto refused = HasSubstr("how the machine's axes lie to the part is not known here; write A, B and C before");
+  EXPECT_THAT(refusal_of(program_of(tilted), options), refused) << "what G53.1 turned them to only the machine knows";
+  options.rotary[1].sign = -1;
+  EXPECT_THAT(refusal_of(program_of("G0 A30. C0\n" + tilted), options), refused) << "the other sense than the post's";
+}
+
+TEST(FanucTilt, TakesTheMachinesZAloneAlongATurnedTableBelowATiltedHead) {
+  Options options;
+  options.rotary = {{'C', 1, {{0, 0, 0}}}, {'B', 1}};
+  options.reference_mm = {{0, 0, 200}};
+  const std::string tilted = "G43.4\nG0 X10. Y0 Z50. B30. C90.\nG49\nG91 ";
+  EXPECT_THAT(ends_of(tilted + "G28 Z0", options).back(), near(10, 0, 200));
+  EXPECT_THAT(refusal_of(program_of(tilted + "G28 X0"), options), HasSubstr("a table is turned below a tilted tool"));
 }
 
 TEST(FanucToolAxis, StandsWhereNobodyKnowsBehindG28) {

@@ -277,6 +277,7 @@ TEST(Rs274Block, SaysWhatIsMissing) {
            {"G10 P1 X1", "of G10 there are L2 and L20"},
            {"G10 L2 P1 R5", "a work system that is turned (R) is not taken yet"},
            {"G92", "G92 needs X, Y or Z"},
+           {"G52", "G52 needs X, Y or Z"},
            {"M50 P0", "overrides belong to the operator"},
            {"M53 P0", "overrides belong to the operator"},
            {"M52 P1", "overrides belong to the operator"},

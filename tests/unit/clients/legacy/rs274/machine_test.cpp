@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "unit/clients/legacy/rs274/imported.hpp"
@@ -89,6 +90,18 @@ TEST(Rs274Offset, OfG92ShiftsWhatCoordinatesMean) {
   EXPECT_THAT(ends_of("G92 X5\nG92.1\nG0 X6"), ElementsAre(ElementsAre(6, 0, 10)));
   EXPECT_THAT(ends_of("G92 X5\nG92.2\nG0 X6\nG92.3 X6"), ElementsAre(ElementsAre(6, 0, 10), ElementsAre(1, 0, 10)));
   EXPECT_THAT(refusal_of("G21 G92 X5\nM2\n"), HasSubstr("not known"));
+}
+
+TEST(Rs274Offset, OfG52IsAbsoluteAndStandsWhereThatOfG92Does) {
+  EXPECT_THAT(ends_of("G52 X1 Y2\nG0 X6 Y0"), ElementsAre(ElementsAre(7, 2, 10)));
+  EXPECT_THAT(ends_of("G52 X1 Y2\nG52 X3\nG0 X6 Y0"), ElementsAre(ElementsAre(9, 2, 10))) << "Y keeps its own";
+  EXPECT_THAT(ends_of("G91 G52 X1\nG52 X1\nG90 G0 X6"), ElementsAre(ElementsAre(7, 0, 10))) << "under G91 too";
+  EXPECT_THAT(ends_of("G20 G52 X1\nG21 G0 X6"), ElementsAre(ElementsAre(31.4, 0, 10)));
+  EXPECT_THAT(ends_of("G92 X5\nG52 X1\nG0 X6"), ElementsAre(ElementsAre(7, 0, 10))) << "in the place of G92's";
+  EXPECT_THAT(ends_of("G52 X1\nG92 X5\nG0 X6"), ElementsAre(ElementsAre(1, 0, 10)));
+  for (const char* end : {"G52 X0", "G92.1", "G92.2"})
+    EXPECT_THAT(ends_of(fmt::format("G52 X1\n{}\nG0 X6", end)), ElementsAre(ElementsAre(6, 0, 10))) << end;
+  EXPECT_THAT(ends_of("G52 X1\nG92.2\nG92.3\nG0 X6"), ElementsAre(ElementsAre(7, 0, 10)));
 }
 
 TEST(Rs274Offset, OfAWorkSystemIsThePartFrame) {

@@ -14,7 +14,7 @@ using gcode::g_codes, gcode::GGroup, gcode::m_codes, gcode::MGroup, gcode::of_gr
 TEST(Rs274Codes, AreInTheGroupsOfTheManual) {
   EXPECT_EQ(g_codes(find_g, of_group(GGroup::Motion)),
             "0 1 2 3 5 5.1 5.2 5.3 33 33.1 38.2 38.3 38.4 38.5 73 74 76 80 81 82 83 84 85 86 87 88 89");
-  EXPECT_EQ(g_codes(find_g, of_group(GGroup::Once)), "4 7 8 10 28 28.1 30 30.1 53 92 92.1 92.2 92.3");
+  EXPECT_EQ(g_codes(find_g, of_group(GGroup::Once)), "4 7 8 10 28 28.1 30 30.1 52 53 92 92.1 92.2 92.3");
   EXPECT_EQ(g_codes(find_g, of_group(GGroup::Plane)), "17 17.1 18 18.1 19 19.1");
   EXPECT_EQ(g_codes(find_g, of_group(GGroup::Distance)), "16 90 91");
   EXPECT_EQ(g_codes(find_g, of_group(GGroup::ArcDistance)), "90.1 91.1");
