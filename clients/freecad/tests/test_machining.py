@@ -12,10 +12,10 @@ import FreeCAD
 import PathScripts.PathProfile as PathProfile
 from appliance import BUILD, Appliance
 from path_job import operation_of, plate_job, written
-from rmac_freecad.jobs import read_job
+from rmac_freecad.jobs import read_job, tools_of
 from rmac_freecad.machines import NoMachineFits, fitting
 from rmac_freecad.program import keep
-from rmac_freecad.running import CutEnded, cut
+from rmac_freecad.running import CutEnded, NotReady, check_tools, cut, look
 from rmac_freecad.simulation import SimulationRefused, simulate
 
 import rmac  # isort: skip
@@ -90,6 +90,16 @@ class MachiningTest(unittest.TestCase):
                 attempt()
             self.assertIn("there is no tool 7 in the tool table", told.exception.why)
             self.assertEqual(told.exception.place.operation, self.job.Tools.Group[0].Label)
+
+    def test_a_tool_that_is_wider_in_the_table_than_in_the_job_is_refused(self):
+        operation_of(self.job, PathProfile, "Profile")
+        for radius, told in ((3.0, "6 mm in the tool table of DMACXYZ, and of 5 mm in TC: Default Tool.*0.5 mm off"), (2.4, "4.8 mm")):
+            self.client.cam.SetTool(1, 0.0, radius)
+            with self.assertRaisesRegex(NotReady, told):
+                check_tools(tools_of(self.job), look(self.client))
+        for radius in (0.0, 2.499, 2.5):  # 0: nobody knows
+            self.client.cam.SetTool(1, 0.0, radius)
+            check_tools(tools_of(self.job), look(self.client))
 
     def test_a_job_is_cut_to_its_end(self):
         program = self.profile()

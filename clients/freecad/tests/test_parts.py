@@ -6,6 +6,7 @@ import unittest
 from types import SimpleNamespace
 
 import FreeCAD
+import Import
 import numpy as np
 import Part
 import rmac_freecad  # noqa: F401
@@ -164,6 +165,20 @@ class StrangersTest(unittest.TestCase):
         file.write_text(body + INCH + tail)
         box = open_step(file).Shape.BoundBox
         np.testing.assert_allclose((box.XLength, box.YLength, box.ZLength), (50.8, 25.4, 12.7), rtol=1e-6)
+
+    def test_an_assembly_as_freecad_writes_it_is_opened_by_the_number_of_its_solid(self):
+        document = FreeCAD.newDocument("assembly")
+        features = [document.addObject("Part::Feature", name) for name in ("Housing", "Lid")]
+        for feature, x in zip(features, (0, 80)):
+            feature.Shape = plate()
+            feature.Placement.Base = Vector(x, 0, 5)
+        file = self.folder / "Träger zwei.step"
+        Import.export(features, str(file))
+        with self.assertRaisesRegex(PartRefused, r"holds 2 solids: Solid 1 \(60 × 30 × 12 mm\), Solid 2 "):
+            open_step(file)
+        boxes = [open_step(file, f"Solid {number}").Shape.BoundBox for number in (1, 2)]
+        self.assertEqual(sorted(round(box.XMin, 6) for box in boxes), [0, 80])
+        self.assertEqual([round(box.ZMin, 6) for box in boxes], [5, 5])
 
     def test_several_solids_are_told_and_one_of_them_is_taken_by_its_name(self):
         file = self.written(plate(), plate(80))

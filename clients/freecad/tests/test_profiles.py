@@ -311,7 +311,7 @@ class RefusedTest(ProfileTest):
     def test_numbers_that_mean_nothing_are_refused(self):
         edges = [line((0, 0), (10, 0))]
         for given in ({"step_mm": 0.0}, {"feed_mm_min": 0.0}, {"plunge_mm_min": math.inf}, {"spindle_rpm": math.nan}, {"tool": 0}, {"bottom_mm": 1.0},
-                      {"safe_mm": -1.0}, {"side": "above"}, {"side": "left", "diameter_mm": 0.0}, {"side": "inside"}, {"ramp_deg": 90.0}):  # fmt: skip
+                      {"safe_mm": -1.0}, {"side": "above"}, {"side": "left", "diameter_mm": 0.0}, {"side": "inside"}, {"ramp_deg": 90.0}, {"top_mm": None}, {"feed_mm_min": "600"}, {"side": "left", "diameter_mm": math.inf}, {"lead_mm": math.nan}, {"step_mm": 1e-9}):  # fmt: skip
             self.refused(edges, **given)
         self.refused([], "select edges")
 

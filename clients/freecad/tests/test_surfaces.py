@@ -175,6 +175,16 @@ class PartsTest(SweptTest):
                     self.assertGreater(np.diff(np.unique(curve.knots)).min() * long, 0.02)
                 self.assertLess(ball_gouge(shape, 2, tips(program)[::8]), GOUGE_MM)
 
+    def test_what_is_swept_leads_up_to_a_wall_where_it_is_upright_and_ends_there(self):
+        torus = Part.makeBox(9, 5, 5, Vector(3, -2, -5)).cut(Part.makeTorus(6, 2.5))  # a groove whose walls stand upright at its rim
+        pocket = Part.makeBox(9, 7, 6).cut(Part.makeBox(6, 4, 4, Vector(1.5, 1.5, 2)))
+        pocket = pocket.makeFillet(1.3, [edge for edge in pocket.Edges if abs(edge.CenterOfMass.z - 2) < 1e-6])
+        for shape, radius in ((torus, 1.2), (pocket, 1.1)):
+            faces = [i for i, face in enumerate(shape.Faces) if isinstance(face.Surface, (Part.Toroid, Part.Cylinder, Part.Sphere))]
+            with self.subTest(radius=radius):
+                program, _ = self.swept(shape, faces, ball_end(radius), scallop_mm=0.08, steepest_deg=70)
+                self.check_ball(shape, faces, radius, 0.08, program, 70)
+
     def test_a_face_with_a_hole_and_a_boss_is_swept_round_them(self):
         shape = Part.makeBox(10, 6, 4).cut(Part.makeCylinder(1.8, 10, Vector(3, 3, -1))).fuse(Part.makeCylinder(1, 7, Vector(7, 3, 0)))
         face = next(i for i, f in enumerate(shape.Faces) if isinstance(f.Surface, Part.Plane) and abs(f.CenterOfMass.z - 4) < 1e-6)

@@ -213,7 +213,7 @@ class MachiningDialogTest(WindowTest):
 
     def test_a_tool_changed_by_hand_is_confirmed_in_the_dialog(self):
         with self.connect("set-up") as client, client.authority():
-            client.cam.SetTool(2, 0.0, 1.0)
+            client.cam.SetTool(2, 0.0, 2.5)
         self.part_job.Tools.Group[0].ToolNumber = 2
         self.part_job.Document.recompute()
         self.profile()

@@ -11,6 +11,7 @@ from rmac_freecad.pockets import pockets
 from rmac_freecad.profiles import profiles
 from rmac_freecad.surfaces import sweeps
 from rmac_freecad.window.operations.operations import PocketDialog, ProfileDialog, SweepDialog
+from rmac_freecad.window.running.machining_dialog import show as show_machining
 from windowed import process_until
 
 
@@ -29,6 +30,11 @@ class PocketDialogTest(OperationTest):
     def test_it_is_run_dry_and_cut(self):
         dialog = self.dialog(PocketDialog, self.face(4))
         self.set(dialog, Depth=0.5, StepOver=2.4, Diameter=8)
+        self.press(dialog.cut_button)
+        process_until(lambda: getattr(show_machining._dialog, "session", None) is self.session and show_machining._dialog.message.refused, "it is told")
+        self.assertIn("has a diameter of 5 mm in the tool table of DMACXYZ, and of 8 mm in Pocket of Box", show_machining._dialog.message.text())
+        with self.connect("set-up") as client, client.authority():
+            client.cam.SetTool(1, 0.0, 4.0)
         self.press(dialog.simulate_button)
         self.shown(dialog)
         machining = self.machined(dialog)

@@ -15,6 +15,8 @@ COOLANT_ON = {"Flood": "M8", "Mist": "M7"}
 def read_job(job, *, rapid_mm_min):
     """`rapid_mm_min` is the fastest that the machine may go, `client.cam.GetMaxFeedrate()`; rapids of tool controllers
     hold where they are slower. Raises `JobRefused`."""
+    if not hasattr(job, "Operations") or not hasattr(job, "Fixtures"):
+        raise JobRefused(f"{getattr(job, 'Label', job)} is no job of the Path workbench; make one on the part")
     if len(job.Fixtures) > 1:
         raise JobRefused(f"{job.Label} has the fixtures {', '.join(job.Fixtures)}; the appliance has one part frame: make a job for each")
     operations = [operation for operation in job.Operations.Group if PathUtil.opProperty(operation, "Active") is not False]

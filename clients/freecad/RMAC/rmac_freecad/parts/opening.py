@@ -4,7 +4,9 @@ import pathlib
 
 import FreeCAD
 import Import
+import Part
 
+ASSEMBLY = b"NEXT_ASSEMBLY_USAGE_OCCURRENCE"
 INCH_MM = 25.4
 TINY_MM = 2.0  # who machines less than that has most likely the wrong unit
 MOST_NAMED = 8
@@ -16,7 +18,7 @@ class PartRefused(Exception):
 
 def open_step(file, name=None):
     """The object of the solid, in a new document, as large as the file says, whatever unit it has. `name` is the label of the solid where
-    there are several. Refused, no document stays."""
+    there are several, "Solid 1" and so on in an assembly. Refused, no document stays."""
     path = pathlib.Path(file)
     if not path.is_file():
         raise PartRefused(f"{path}: there is no such file")
@@ -30,7 +32,7 @@ def open_step(file, name=None):
 
 def _only(document, path, name):
     try:
-        Import.insert(str(path), document.Name)
+        (_insert_assembly if ASSEMBLY in path.read_bytes() else Import.insert)(str(path), document.Name)
     except Exception as error:  # FreeCAD raises whatever its reader throws
         raise PartRefused(f"{path.name} is no STEP file that FreeCAD reads: {str(error).strip() or type(error).__name__}") from error
     document.recompute()
@@ -52,6 +54,13 @@ def _only(document, path, name):
     alone.Label, alone.Shape = label, solid
     document.recompute()
     return alone
+
+
+def _insert_assembly(file, document):
+    """Its solids where they stand, numbered as the file has them. `Import` of FreeCAD 0.20 ends FreeCAD where it reads an assembly."""
+    for number, solid in enumerate(Part.read(file).Solids, 1):
+        feature = FreeCAD.getDocument(document).addObject("Part::Feature", "Solid")
+        feature.Label, feature.Shape = f"Solid {number}", solid
 
 
 def _solids(document):

@@ -1,6 +1,7 @@
 """The object of a document that clears a pocket: it follows its face or sketch when that changes."""
 
 from rmac_freecad.jobs.cut_object import CutObject, add_cut_object
+from rmac_freecad.jobs.standing import below_top, stand_of, top_around
 from rmac_freecad.pockets.outline import outline_of
 from rmac_freecad.pockets.pocket import ENTRIES, ORDERS, Pocket, check, plan_pocket
 from rmac_freecad.pockets.refusal import PocketRefused
@@ -35,12 +36,17 @@ class PocketFeature(CutObject):
     def planning(self, feature):
         """What a thread may call, for the plan. The object is looked at now."""
         settings, last = settings_of(feature), self.last
-        if last is not None and last[0] == settings:
-            return lambda: last[1]
         outline = outline_in(feature)
+        base = feature.Base[0]
+        wrong = below_top(base.Label, settings.safe_mm, top_around(base))
+        if wrong:
+            raise PocketRefused(wrong)
+        given = settings, stand_of(base)
+        if last is not None and last[0] == given:
+            return lambda: last[1]
 
         def plan():
-            self.last = settings, plan_pocket(outline, settings)
+            self.last = given, plan_pocket(outline, settings)
             return self.last[1]
 
         return plan
@@ -77,7 +83,7 @@ def pocket_of(document, base, face=""):
     feature.Label = f"Pocket of {base.Label}"
     feature.Base = (base, [face] if face else [""])
     top = top_above(base, outline.z) if face else outline.z
-    feature.Top, feature.Depth, feature.Safe = top, top - outline.z or 1.0, top + ABOVE_MM
+    feature.Top, feature.Depth, feature.Safe = top, top - outline.z or 1.0, max(top, top_around(base)) + ABOVE_MM
     document.commitTransaction()
     return feature
 

@@ -6,6 +6,7 @@ import numpy as np
 import Part
 from FreeCAD import Vector
 
+from rmac_freecad.pockets.clash import Surroundings
 from rmac_freecad.pockets.crossings import crossings
 from rmac_freecad.pockets.refusal import PocketRefused
 from rmac_freecad.pockets.spline import smooth_parts
@@ -24,12 +25,13 @@ class Outline:
     contours: tuple  # the outer one first, then islands
     z: float
     wall: Wall
+    around: Surroundings | None = None  # of a solid's face
 
 
 def outline_of(feature, face=""):
     """Of a face, "Face3", of the object, whose inner wires are islands, but for ways down from a floor; else of all its edges, as of a sketch. Where it stands in the
     document. Raises `PocketRefused`, and `ProfileRefused` where edges do not make contours."""
-    wires = _wires_of_face(feature, face) if face else _wires_of_edges(edges_of(feature))
+    wires, around = _wires_of_face(feature, face) if face else (_wires_of_edges(edges_of(feature)), None)
     contours = [_closed(contour_of(wire)) for wire in wires]
     z = contours[0].z
     for contour in contours:
@@ -39,7 +41,7 @@ def outline_of(feature, face=""):
     _check_apart(contours)
     outer, islands = _nested(contours)
     contours = (outer, *(island.turned() for island in islands))
-    return Outline(contours, z, Wall([piece for contour in contours for piece in contour.pieces]))
+    return Outline(contours, z, Wall([piece for contour in contours for piece in contour.pieces]), around)
 
 
 def _wires_of_face(feature, name):
@@ -56,16 +58,22 @@ def _wires_of_face(feature, name):
         raise PocketRefused("it is not level; a pocket is cleared on a face that lies across Z", edge=name)
     if shape.Solids and face.normalAt(*(sum(face.ParameterRange[i : i + 2]) / 2 for i in (0, 2))).z < 0:
         raise PocketRefused("it looks down; a pocket is cleared from above", edge=name)
-    wires = [wire for wire in face.Wires if wire.isSame(face.OuterWire) or not _is_way_down(shape, face, wire)]
-    return [[(_name(shape, edge), edge) for edge in wire.Edges] for wire in wires]
+    is_floor = _is_floor(shape, face)
+    wires = [wire for wire in face.Wires if wire.isSame(face.OuterWire) or not (is_floor and _is_way_down(shape, face, wire))]
+    named = [[(_name(shape, edge), edge) for edge in wire.Edges] for wire in wires]
+    return named, Surroundings(shape, name, is_floor) if shape.Solids else None
+
+
+def _is_floor(shape, face):
+    """Whether walls rise from it all around."""
+    z = face.CenterOfMass.z
+    walls = [other for edge in face.OuterWire.Edges for other in shape.Faces if not other.isSame(face) and any(one.isSame(edge) for one in other.Edges)]
+    return bool(walls) and all(wall.BoundBox.ZMax > z + ABOVE_MM for wall in walls)
 
 
 def _is_way_down(shape, face, wire):
-    """Into a hole or a deeper pocket of a pocket's floor, with nothing standing above: no island."""
+    """From a pocket's floor into a hole or a deeper pocket, with nothing standing above: no island."""
     z, top = face.CenterOfMass.z, shape.BoundBox.ZMax
-    walls = [other for edge in face.OuterWire.Edges for other in shape.Faces if not other.isSame(face) and any(one.isSame(edge) for one in other.Edges)]
-    if not walls or any(wall.BoundBox.ZMax < z + ABOVE_MM for wall in walls):
-        return False  # no floor
     above = Part.Face(wire).extrude(Vector(0, 0, top + 1 - z))
     above.translate(Vector(0, 0, ABOVE_MM))
     return shape.distToShape(above)[0] > 0

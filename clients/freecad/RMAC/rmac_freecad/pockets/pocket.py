@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import rmac
 from rmac_freecad.pockets.area import unreached
 from rmac_freecad.pockets.chains import chains_of, cleared, middles
+from rmac_freecad.pockets.clash import check_part
 from rmac_freecad.pockets.entries import circle_at, entry_of, is_short
 from rmac_freecad.pockets.outline import Outline
 from rmac_freecad.pockets.refusal import PocketRefused
@@ -14,6 +15,7 @@ from rmac_freecad.program.tool_number import is_tool_number
 
 ENTRIES = ("helix", "ramp")
 ORDERS = ("inside out", "outside in")
+MOST_LEVELS = 10_000
 OVER_MM = 0.5  # of what is cleared already: down to there as quick as may be
 WIDEST = 0.95  # of the tool's diameter from loop to loop
 
@@ -81,6 +83,7 @@ def plan_pocket(outline, pocket):
     """Takes its time; touches no document."""
     check(pocket)
     levels, missed = cleared(outline, pocket.radius_mm, pocket.step_over_mm)
+    check_part(outline, levels, pocket)
     chains = chains_of(outline, levels, lambda loop: _seam(outline, loop, pocket))
     if pocket.order == "outside in":
         chains = [chain[::-1] for chain in chains[::-1]]
@@ -117,6 +120,8 @@ def check(pocket):
             raise PocketRefused(f"the {what} is {value!r}; it is one of {', '.join(known)}")
     if pocket.step_over_mm > WIDEST * 2 * pocket.radius_mm:
         raise PocketRefused(f"the step-over of {pocket.step_over_mm:g} mm is more than {WIDEST:.0%} of the tool's diameter; give at most {WIDEST * 2 * pocket.radius_mm:g} mm")
+    if pocket.depth_mm / pocket.step_down_mm > MOST_LEVELS:
+        raise PocketRefused(f"more than {MOST_LEVELS} levels of {pocket.step_down_mm:g} mm would be needed; give a larger step-down")
     if pocket.safe_mm < pocket.top_mm + OVER_MM:
         raise PocketRefused(f"the height to cross at, Z {pocket.safe_mm:g}, is at least {OVER_MM:g} mm above the top, Z {pocket.top_mm:g}")
     if pocket.ramp_deg > 45:

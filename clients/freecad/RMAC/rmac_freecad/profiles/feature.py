@@ -1,8 +1,10 @@
 """The object of a document that cuts along edges or a sketch: it follows them when they change."""
 
 from rmac_freecad.jobs.cut_object import CutObject, add_cut_object
+from rmac_freecad.jobs.standing import below_top, top_around
 from rmac_freecad.profiles.contour import contour_of, edges_of
 from rmac_freecad.profiles.profile import SIDES, Profile, read_profile
+from rmac_freecad.profiles.refusal import ProfileRefused
 
 GROUP = "Profile"
 ABOVE_MM = 5.0
@@ -46,7 +48,7 @@ def profile_of(document, chosen):
     feature = add_cut_object(document, "EdgeProfile", EdgeProfile, GROUP, PROPERTIES)
     feature.Label = f"Along {chosen[0][0].Label}"
     feature.Edges = [(one, tuple(names) or ("",)) for one, names in chosen]
-    feature.Top, feature.Bottom, feature.Safe = contour.z, contour.z - 1, contour.z + ABOVE_MM
+    feature.Top, feature.Bottom, feature.Safe = contour.z, contour.z - 1, max(contour.z, *(top_around(one) for one, _ in chosen)) + ABOVE_MM
     document.commitTransaction()
     return feature
 
@@ -59,6 +61,10 @@ def settings_of(feature):
 
 def program_of(feature, rapid_mm_min):
     """As `jobs.read_job` does of a job."""
+    for one, _ in feature.Edges:
+        wrong = below_top(one.Label, feature.Safe.Value, top_around(one))
+        if wrong:
+            raise ProfileRefused(wrong)
     return read_profile(feature.Label, _edges(feature.Edges), settings_of(feature), rapid_mm_min=rapid_mm_min)
 
 

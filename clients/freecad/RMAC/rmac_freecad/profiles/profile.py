@@ -12,6 +12,11 @@ from rmac_freecad.program import Program
 from rmac_freecad.program.tool_number import is_tool_number
 
 SIDES = ("on", "left", "right", "inside", "outside")
+MOST_PASSES = 10_000
+NUMBERS = (
+    ("tool's diameter", "diameter_mm"), ("top", "top_mm"), ("bottom", "bottom_mm"), ("step", "step_mm"), ("height to cross at", "safe_mm"), ("feed", "feed_mm_min"),
+    ("feed down", "plunge_mm_min"), ("spindle speed", "spindle_rpm"), ("ramp", "ramp_deg"), ("lead", "lead_mm"),
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -59,8 +64,12 @@ def read_profile(label, edges, profile, *, rapid_mm_min):
 def _check(profile):
     if profile.side not in SIDES:
         raise ProfileRefused(f"the side is {profile.side}; it is one of {', '.join(SIDES)}")
+    for what, name in NUMBERS:
+        value = getattr(profile, name)
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+            raise ProfileRefused(f"the {what} ({name}) is {'not given' if value is None else repr(value)}; give a number")
     for what, value in (("step", profile.step_mm), ("feed", profile.feed_mm_min), ("feed down", profile.plunge_mm_min), ("spindle speed", profile.spindle_rpm)):
-        if not 0 < value < math.inf:
+        if not value > 0:
             raise ProfileRefused(f"the {what} is {value:g}; it is more than 0")
     if not is_tool_number(profile.tool):
         raise ProfileRefused(f"the tool's number is {profile.tool!r}; it is 1 or more")
@@ -70,7 +79,9 @@ def _check(profile):
         raise ProfileRefused(f"the bottom, Z {profile.bottom_mm:g}, is below the top, Z {profile.top_mm:g}, and that below the height to cross at, Z {profile.safe_mm:g}")
     if not 0 <= profile.ramp_deg < 90:
         raise ProfileRefused(f"the ramp is {profile.ramp_deg:g}° steep; it is 0 to 90°, and 0 is straight down")
-    if not 0 <= profile.lead_mm < math.inf:
+    if (profile.top_mm - profile.bottom_mm) / profile.step_mm > MOST_PASSES:
+        raise ProfileRefused(f"more than {MOST_PASSES} passes of {profile.step_mm:g} mm would be needed; give a larger step")
+    if not 0 <= profile.lead_mm:
         raise ProfileRefused(f"the lead is {profile.lead_mm:g} mm; it is the radius of a quarter circle, or 0 for none")
     if profile.lead_mm and (profile.side == "on" or profile.ramp_deg):
         raise ProfileRefused("a lead is for ways beside a contour that go straight down; have no ramp, and another side than on, or no lead")

@@ -27,11 +27,23 @@ def look(client):
     return MachineNow(client.machine(), client.cam.GetTools(), client.cam.GetPartFrame())
 
 
+SAME_RADIUS_MM = 0.01
+
+
 def check_tools(tools, now):
+    """The table has them all, as wide as they were planned; a radius of 0, in the table or of the tool, is not known."""
     missing = lacking(tools, now.tools)
     if missing:
         names = ", ".join(f"tool {tool.number} ({tool.label})" for tool in missing)
         raise NotReady(f"The tool table of {now.machine.name} lacks {names}. Give the length, from the spindle to the tip, and add it.")
+    entries = {tool["ToolNumber"]: tool for tool in now.tools["Tools"]}
+    for tool in tools:
+        radius = entries[tool.number].get("Radius", 0)
+        if radius and tool.radius_mm and abs(radius - tool.radius_mm) > SAME_RADIUS_MM:
+            raise NotReady(
+                f"Tool {tool.number} has a diameter of {2 * radius:g} mm in the tool table of {now.machine.name}, and of {2 * tool.radius_mm:g} mm in {tool.label}: "
+                f"what is cut would be {abs(radius - tool.radius_mm):.3g} mm off at each wall. Give both the diameter of the tool that is there, or another number."
+            )
 
 
 def check_part_zero(now, is_machine_zero):

@@ -2,6 +2,7 @@
 
 from rmac_freecad.jobs.cut_object import CutObject, add_cut_object
 from rmac_freecad.jobs.refusal import JobRefused
+from rmac_freecad.jobs.standing import stand_of
 from rmac_freecad.surfaces.five import MATCHED
 from rmac_freecad.surfaces.machining import ABOVE_MM, placed_shape, plan_faces
 from rmac_freecad.surfaces.mill import Mill
@@ -42,7 +43,7 @@ class SweepFeature(CutObject):
         if base is None:
             raise JobRefused("its faces are gone; make it anew")
         mill, settings, last = _mill_of(feature), _settings_of(feature), self.last
-        given = tuple(names), mill, settings
+        given = tuple(names), mill, settings, stand_of(base)
         if last is not None and last[0] == given:
             return lambda: last[1]
         label, shape = base.Label, placed_shape(base)

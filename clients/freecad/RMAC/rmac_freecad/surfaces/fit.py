@@ -23,6 +23,14 @@ class Kink(Exception):
         self.t, self.z = t, z
 
 
+class Upright(Exception):
+    """The heights go up or down as a wall does there: no smooth curve is near enough, however short its spans."""
+
+    def __init__(self, t):
+        super().__init__(f"at {t:g}")
+        self.t = t
+
+
 class Plan:
     """A stretch of a pass as seen from above. `at` gives its places; a straight one is exact with any knots."""
 
@@ -58,7 +66,7 @@ class Plan:
 
 def fit(plan, height_at, t, z, band_mm, mm_a_unit):
     """Knots and poles of the tip's curve: at most `band_mm` above the heights and never below. `t`, `z` are what is known of them,
-    both ends among them; `height_at(t)` tells more. Raises `Kink` where there is one."""
+    both ends among them; `height_at(t)` tells more. Raises `Kink` where there is one, and `Upright`."""
     breaks = plan.breaks
     while True:
         t, z = _completed(breaks, t, z, height_at)
@@ -77,8 +85,9 @@ def fit(plan, height_at, t, z, band_mm, mm_a_unit):
         bad = _spans_of(breaks, bad)
         for span in bad[np.diff(breaks)[bad] * mm_a_unit < KINK_SPAN_MM]:
             _refuse_kink(height_at, breaks, span, mm_a_unit)
-        if (np.diff(breaks)[bad] * mm_a_unit).min() < SHORTEST_MM:
-            raise JobRefused(f"no smooth curve stays within {band_mm:g} mm of the part; give a larger tolerance or scallop")
+        shortest = bad[np.diff(breaks)[bad].argmin()]
+        if (breaks[shortest + 1] - breaks[shortest]) * mm_a_unit < SHORTEST_MM:
+            raise Upright((breaks[shortest] + breaks[shortest + 1]) / 2)
         breaks = _halved(breaks, bad)
 
 

@@ -15,8 +15,15 @@ class Stretches:
         self._rows, self._mill, self._band_mm = rows, mill, band_mm
 
     def of(self, row):
-        """Lists of curves (knots, poles), each list one stretch without a gap."""
-        found = [self._stretch(row, first, last) for first, last in row.runs()]
+        """Lists of curves (knots, poles), each list one stretch without a gap. A run that leads up a wall between two samples, as over the
+        rim of a groove, is parted there."""
+        found, waiting = [], row.runs()[::-1]
+        while waiting:
+            first, last = waiting.pop()
+            try:
+                found.append(self._stretch(row, first, last))
+            except fit.Upright as upright:
+                waiting += _parted(first, last, int(np.searchsorted(row.t, upright.t)))
         return [curves for curves in found if curves]
 
     def _tips(self, w, t):
@@ -111,3 +118,14 @@ class Stretches:
 
     def _coarse(self, first, last):
         return max(int((last - first) * self._rows.family.t_mm / (4 * self._mill.radius_mm)), 1)
+
+
+def _parted(first, last, after):
+    """Without the way between the sample `after` a place and the one before it; the later part first."""
+    if after <= first:
+        parts = [(first + 1, last)]
+    elif after > last:
+        parts = [(first, last - 1)]
+    else:
+        parts = [(after, last), (first, after - 1)]
+    return [(a, b) for a, b in parts if a < b]
