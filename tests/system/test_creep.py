@@ -35,7 +35,6 @@ class CreepingJoint:
         self.direction = chance.choice([1, -1])
         self.cogging = {order: (self.rated * chance.uniform(0.004, 0.02), chance.uniform(0, 2 * math.pi))
                         for order in chance.sample([12, 24, 36, 60, 72, 84], 2)}
-        self.belt, self.wound = 0.0, 0.6  # N of friction that builds up over so many mm beside, as what a belt winds up against does
         self.noise = np.random.default_rng(seed)
 
     def force_of_motor(self, place):
@@ -46,7 +45,7 @@ class CreepingJoint:
 
     def run(self, wanted):
         """Columns of a record, of this way that it is to go."""
-        behind = place = speed = bristle = integral = before = 0.0
+        place = speed = bristle = integral = before = 0.0
         sigma, effort, delayed = self.coulomb / self.presliding, self.load, self.load
         damping = 0.6 * math.sqrt(sigma * self.mass)
         rows, dt = [], PERIOD / STEPS
@@ -64,8 +63,6 @@ class CreepingJoint:
                 near = math.exp(-(speed / self.stribeck) ** 2)
                 friction = sigma * bristle + near * damping * bend + self.viscous * speed
                 bristle += bend * dt
-                behind += (speed - abs(speed) / self.wound * behind) * dt
-                friction += self.belt * behind / self.wound
                 speed += (delayed - friction - self.load + self.force_of_motor(place)) / self.mass * dt
                 place += speed * dt
         table = np.array(rows)
@@ -168,17 +165,6 @@ class Creep(unittest.TestCase):
         joint.coulomb = 0.3 * joint.rated * 2 * math.pi * 1000 / TURN
         with self.assertRaisesRegex(model.Unidentifiable, "the strokes show no friction, and the swings"):
             self.found_in(records, joint, [self.scale(joint)])
-
-    def test_tells_no_friction_where_bristles_do_not_explain_it(self):
-        """Behind a belt that winds up half of it builds up over another way: a law would add at each turn what the joint does not take."""
-        for seed in range(FIRST, FIRST + SEEDS):
-            with self.subTest(seed=seed):
-                joint = CreepingJoint(seed)
-                joint.belt = joint.coulomb
-                _, found = self.find(joint)
-                self.assertEqual(found.friction, creep.NO_FRICTION)
-                self.assertLess(found.explained, creep.UNDERSTOOD)
-                self.assertGreater(found.not_told, joint.coulomb)
 
     def test_tells_no_cogging_where_the_joint_gives_way(self):
         """By what it answers, three and a half times as much effort would be needed for the same motion as of a rigid one: so near to where

@@ -28,9 +28,6 @@ LEAST_SHARE = 0.001  # of the rated torque; less is not worth a harmonic
 # more about how it bends and sticks than about the motor.
 MOST_BENT = 1.5
 LEAST_EXPLAINED = 0.5  # of what creeping takes: less, and what was found is not what the joint does
-# Less, and its friction is something else than bristles, as behind a belt that winds up or with play: none is told, because what a law
-# would add where such a joint turns round is not what it takes.
-UNDERSTOOD = 0.98
 # Of the rated torque: swings of a motor that cogs show so much friction where there is none.
 MOST_FALSE_FRICTION = 0.1
 MOST_OF_MAP = 16  # harmonics, as device.json takes them
@@ -74,14 +71,13 @@ NO_FRICTION = Friction(0.0, 0.0, 1.0, 1.0)
 @dataclass
 class Creep:
     """What was found. `explained`: of what the joint of the swings leaves open in these records. `hidden`: harmonics that are there,
-    and of which the joint shows too little, or too much, to tell them. `friction` is none where bristles explain too little."""
+    and of which the joint shows too little, or too much, to tell them."""
 
     friction: Friction
     load: float
     harmonics: list  # (order, cosine, sine) of the motor's own torque, N·m
     explained: float
     hidden: list  # (order, Hz at which it passed)
-    not_told: float = 0.0  # sliding friction of the bristles that explain too little
 
 
 def unwrapped(counts):
@@ -306,8 +302,5 @@ def find(head, records, joint, plant, joint_model):
     if explained < LEAST_EXPLAINED and (friction is not NO_FRICTION or harmonics):
         raise Unidentifiable(f"what was found explains {100 * explained:.0f} % of what creeping takes: it is something else; give more "
                              "--travel, of two turns of the motor or more, or leave out --creep")
-    not_told = 0.0
-    if explained < UNDERSTOOD and friction is not NO_FRICTION:
-        friction, not_told = NO_FRICTION, friction.sliding
     return motor, Creep(friction, float(found[1]), harmonics, explained,
-                        [] if no_cogging(motor) else [(order, order * passing) for order in hidden], not_told)
+                        [] if no_cogging(motor) else [(order, order * passing) for order in hidden])

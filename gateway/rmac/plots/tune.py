@@ -233,7 +233,7 @@ def crept(given, head, plant, bent, lead):
     parameters = {"lead_s": lead, "presliding": friction.presliding, "breakaway": friction.breakaway,
                   "stribeck_speed": friction.stribeck_speed}
     harmonics = [{"Order": order, "Cosine": rounded(cosine), "Sine": rounded(sine)} for order, cosine, sine in found.harmonics]
-    return {"friction": friction.sliding, "friction_not_told": found.not_told, "explained": found.explained,
+    return {"friction": friction.sliding, "explained": found.explained,
             "parameters": {**kept, **{key: [rounded(value)] for key, value in parameters.items()}},
             "motor": None if creep.no_cogging(motor) else {
                 "actuator": motor.actuators[0], "of": len(head["actuators"]), "rated_torque": motor.rated_torque,

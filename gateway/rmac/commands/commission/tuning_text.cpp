@@ -13,6 +13,10 @@ namespace rmac::cli {
 
 namespace {
 
+/// Where less of creeping is explained, the joint may still stick under what was found. Of a joint without friction
+/// nothing but noise may be left to explain.
+constexpr double kUnderstood_percent = 98;
+
 using Json = nlohmann::json;
 
 void print_filters(const Json& filters) {
@@ -27,12 +31,7 @@ void print_filters(const Json& filters) {
 void print_creep(const Json& found, const char* way, const char* effort) {
   const Json &creep = found["creep"], &motor = creep["motor"], &parameters = creep["parameters"];
   const auto number = [&](const char* key) { return parameters[key][0].get<double>(); };
-  if (creep["friction_not_told"] > 0) {
-    fmt::print(
-        "friction is not told: bristles that slide at {:.3g} {} do not explain enough; it is something else here, as "
-        "behind a soft belt or play, and none is proposed: see what `rmac measure-following` shows\n",
-        creep["friction_not_told"].get<double>(), effort);
-  } else if (creep["friction"] == 0) {
+  if (creep["friction"] == 0) {
     fmt::print("friction: none\n");
   } else {
     fmt::print(
@@ -61,7 +60,12 @@ void print_creep(const Json& found, const char* way, const char* effort) {
         fmt::join(orders, ", "), fmt::join(places, ", "));
   }
   if (!motor.is_null() && harmonics.empty() && hidden.empty()) fmt::print("cogging: none\n");
-  fmt::print("the model explains {:.1f} % of what creeping takes\n", 100 * creep["explained"].get<double>());
+  const double explained = 100 * creep["explained"].get<double>();
+  fmt::print("the model explains {:.1f} % of what creeping takes{}\n", explained,
+             creep["friction"] > 0 && explained < kUnderstood_percent
+                 ? ": friction may be something else here, as behind a soft belt or play; see "
+                   "what `rmac measure-following` shows before you keep it"
+                 : "");
 }
 
 /// Of a joint that several motors move side by side, which are held in step beside the law.
