@@ -24,7 +24,9 @@ constexpr double kLeastRange = 0.1;    // of MaxFollowingError: a path that trem
 
 constexpr int kRestsCycles = 5;         // of the setpoint
 constexpr double kFrozenEffort = 0.03;  // of MaxEffort, by which it changes meanwhile
-constexpr double kFarDigits = 10;       // that it was to go, where only its effort tells
+constexpr double kAwayDigits = 10;      // that it was to go, where it never rested so
+constexpr double kFarDigits = 50;       // that it was to go: no flicker, and no friction, makes so much good
+constexpr double kFarEffort = 0.01;     // which is enough then
 constexpr double kStillS = 0.1;         // of an encoder whose last digit may rest, as a coarse one's
 constexpr double kStillEffort = 0.2;    // more than twice the friction, where the joint is to turn round
 
@@ -80,9 +82,10 @@ void StandingWatch::watch_digits(const ResponseSeen& seen, FaultSink& faults) co
   const double usual = digits_.usual_change() / joint_->max_effort;
   const double for_s = static_cast<double>(digits_.same()) * period_s_;
   const double away = seen.position_set - set_still_;
-  const bool is_far = std::abs(away) > kFarDigits * digits_.digit();
-  if (froze() || (is_far && digits_.never_rested_so())) {
-    if (for_s < kStandsS || changed < std::clamp(2 * usual, kFrozenEffort, kStillEffort)) return;
+  const double digits_away = digits_.digit() > 0 ? std::abs(away) / digits_.digit() : 0;
+  const double least = digits_away > kFarDigits ? kFarEffort : kFrozenEffort;
+  if (froze() || (digits_away > kAwayDigits && digits_.never_rested_so())) {
+    if (for_s < kStandsS || changed < std::clamp(2 * usual, least, kStillEffort)) return;
     raise_frozen(faults);
   } else if (!slips() && for_s >= kStillS && changed >= kStillEffort && std::abs(away) > 2 * digits_.digit()) {
     faults.raise({ServoFault::Kind::StandsStill, ServoFault::Part::Joint, index_, away, for_s});
