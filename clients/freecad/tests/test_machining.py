@@ -1,5 +1,6 @@
 """A job against the built programs: simulated, machined by a real daemon, and kept in the document."""
 
+import json
 import os
 import pathlib
 import sys
@@ -13,7 +14,7 @@ import PathScripts.PathProfile as PathProfile
 from appliance import BUILD, Appliance
 from path_job import operation_of, plate_job, written
 from rmac_freecad.jobs import read_job, tools_of
-from rmac_freecad.machines import NoMachineFits, fitting
+from rmac_freecad.machines import NoMachineFits, compare, fitting
 from rmac_freecad.program import keep
 from rmac_freecad.running import CutEnded, NotReady, check_tools, cut, look
 from rmac_freecad.simulation import SimulationRefused, simulate
@@ -133,6 +134,38 @@ class MachiningTest(unittest.TestCase):
         self.assertIn(MACHINE, [fit.machine for fit in fits])
         times = [fit.found.cycle_time_s for fit in fits]
         self.assertEqual(times, sorted(times))
+
+    def test_machines_that_keep_to_the_path_are_ranked_before_quicker_ones(self):
+        written(self.job, ["G0 X0 Y0 Z0", "G1 X20 F30", "G1 Y20", "G1 X0", "G1 Y0"])
+        mills = self.client.machines("Type = 'Mill'")
+        fits = fitting(self.job, mills, self.client.cam.GetTools(), RMAC)
+        off = sorted(fit.found.off_path_mm for fit in fits)
+        self.assertGreater(off[0], 0)
+        within_mm = (off[0] + off[-1]) / 2
+        ranked = [fit.found for fit in fitting(self.job, mills, self.client.cam.GetTools(), RMAC, within_mm)]
+        self.assertEqual(sorted(found.off_path_mm for found in ranked), off)
+        keep = [found for found in ranked if found.off_path_mm <= within_mm]
+        self.assertEqual(ranked[: len(keep)], sorted(keep, key=lambda found: found.cycle_time_s))
+        self.assertEqual(ranked[len(keep) :], sorted(ranked[len(keep) :], key=lambda found: found.off_path_mm))
+        self.assertTrue(0 < len(keep) < len(ranked), off)
+
+    def test_a_machine_that_would_stop_cuts_nothing_and_one_without_models_is_of_unknown_accuracy(self):
+        told = {"cycle_time_s": 3, "length_mm": 1, "limited_by_s": {}, "move_limits": []}
+        stopped = {"line": 2, "why": "joint X swings"}
+        answers = {"stops": json.dumps({**told, "dynamics": {"stopped": stopped, "path_peak_mm": 0.1}}),
+                   "stops_at_once": json.dumps({**told, "dynamics": {"stopped": {**stopped, "line": 0}, "path_peak_mm": 0}}),
+                   "no_models": json.dumps(told), "sound": json.dumps({**told, "dynamics": {"stopped": None, "path_peak_mm": 0.02}})}  # fmt: skip
+        with tempfile.TemporaryDirectory() as folder:
+            fake = pathlib.Path(folder, "rmac")
+            cases = "".join(f" *--dynamics*' {name} '*) echo '{said}'; exit {0 if name == 'sound' else 1};;\n" for name, said in answers.items() if name != "no_models")
+            fake.write_text("#!/bin/sh\ncase \"$* \" in\n" + cases + " *--dynamics*) echo 'rmac: no models of its axes' >&2; exit 1;;\n"
+                            + f" *) echo '{answers['no_models']}';;\nesac\n")
+            fake.chmod(0o755)
+            program = self.profile()
+            fits, why = compare({name: program for name in answers}, self.client.cam.GetTools(), str(fake), within_mm=1)
+        self.assertEqual([(fit.machine, fit.found.off_path_mm) for fit in fits], [("sound", 0.02), ("no_models", None)])
+        self.assertEqual(set(why), {"stops", "stops_at_once"})
+        self.assertIn(f"{program.place_of(1)}: the machine would stop: joint X swings", str(why["stops"]))
 
     def test_where_no_machine_reaches_the_part_each_one_s_reason_is_told(self):
         written(self.job, AWAY)

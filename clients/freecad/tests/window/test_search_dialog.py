@@ -56,6 +56,18 @@ class SearchDialogTest(WindowTest):
         self.told(self.dialog, "can cut it")
         self.assertIn("s", self.dialog.list.topLevelItem(0).text(6))
         self.assertEqual(self.dialog.list.chosen.name, self.names()[0])
+        off = [self.dialog.list.topLevelItem(number).text(7) for number in range(len(self.names()))]
+        self.assertRegex(off[0], r"^0\.0\d+ mm$")
+
+    def test_machines_that_keep_to_the_path_come_before_quicker_ones(self):
+        operation_of(self.job(), PathProfile, "Profile")
+        self.dialog.fields.joints.setValue(3)
+        self.search()
+        self.dialog.within.set_quantity(0.001)
+        self.dialog.fits_button.click()
+        self.told(self.dialog, "none is known to keep within 0.001 mm of the path")
+        off = [float(text.split()[0]) for text in (self.dialog.list.topLevelItem(number).text(7) for number in range(len(self.names()))) if text]
+        self.assertEqual(off, sorted(off))
 
     def test_where_no_machine_reaches_the_part_each_one_s_reason_is_told(self):
         written(self.job(), ("G0 X0 Y0 Z20", "G1 X10 F20", "G1 X600", "G1 X0"))

@@ -7,7 +7,8 @@ from rmac_freecad.machines import compare
 from rmac_freecad.window.dialog import Dialog, OnlyOne, button, row
 from rmac_freecad.window.machines.characteristics_dialog import CharacteristicsDialog
 from rmac_freecad.window.machines.machine_list import MachineList
-from rmac_freecad.window.machines.wanted_fields import WantedFields
+from rmac_freecad.window.machines.wanted_fields import ANY, WantedFields
+from rmac_freecad.window.quantity import LENGTH, QuantityField, length_text
 from rmac_freecad.window.work import work_in_question
 
 
@@ -25,7 +26,10 @@ class SearchDialog(Dialog):
         self.list.itemSelectionChanged.connect(self._enable)
         self.edit_button = button("Edit", self._edit, "Lets the search be changed")
         self.search_button = button("Search machines", self.search)
-        self.fits_button = button("Fits this part", self.fits, "Simulates the document's job, or its file of another control, on each machine, and puts the quickest first")
+        self.fits_button = button("Fits this part", self.fits, "Simulates the document's job, or its file of another control, on each machine, with what its axes make of it, and ranks them by time and accuracy")
+        self.within = QuantityField(LENGTH, lowest=0)
+        self.within.setSpecialValueText(ANY)
+        self.within.setToolTip("Machines whose axes keep the tool so near to its path come first, the quickest at the top; then the others, the most accurate first")
         self.characteristics_button = button("Machine characteristics…", self.characteristics)
         self.virtual = QtGui.QCheckBox("Virtual mode")
         self.virtual.setToolTip("The machine is driven as a model, and no drive is touched")
@@ -36,9 +40,9 @@ class SearchDialog(Dialog):
         box.addWidget(self.fields)
         box.addLayout(row(self.edit_button, self.search_button, None))
         box.addWidget(self.list)
-        box.addLayout(row(self.fits_button, self.characteristics_button, None, self.virtual, self.load_button))
+        box.addLayout(row(self.fits_button, QtGui.QLabel("within"), self.within, self.characteristics_button, None, self.virtual, self.load_button))
         box.addWidget(self.message)
-        self.resize(900, 620)
+        self.resize(980, 620)
         self._searching(False)
         self._enable()
 
@@ -54,7 +58,7 @@ class SearchDialog(Dialog):
 
     def fits(self):
         """A job is read here, by FreeCAD's own thread; it is simulated by another one. Rapids are as fast as each machine may go."""
-        machines, rmac = self.list.machines, self.session.settings.rmac
+        machines, rmac, within_mm = self.list.machines, self.session.settings.rmac, self.within.quantity or None
         try:
             work = work_in_question()
             readings = {feed: work.reading(feed, rmac) for feed in {machine.max_feed_mm_min for machine in machines}}
@@ -65,7 +69,7 @@ class SearchDialog(Dialog):
             by_feed = {feed: read() for feed, read in readings.items()}
             programs = {machine.name: by_feed[machine.max_feed_mm_min] for machine in machines}
             tools = work.tools(next(iter(by_feed.values())))
-            return compare(programs, completed(_table(client), tools), rmac)
+            return compare(programs, completed(_table(client), tools), rmac, within_mm)
 
         self.ask(compared, self._show_fits, f"{work.label} is simulated on {len(machines)} machines…")
 
@@ -97,7 +101,14 @@ class SearchDialog(Dialog):
         if not fits:
             first, reason = next(iter(why.items()))
             return self.failed(NoneFits(f"None of these machines can cut the job; why not stands beside each. {first}: {reason}"))
-        self.message.tell(f"{len(fits)} of {len(self.list.machines)} machines can cut it; {fits[0].machine} is the quickest. A machine is taken to stand at its zero, and the part's zero at the machine's.")
+        self.message.tell(f"{len(fits)} of {len(self.list.machines)} machines can cut it; {self._first(fits)} A machine is taken to stand at its zero, and the part's zero at the machine's.")
+
+    def _first(self, fits):
+        first, within_mm = fits[0], self.within.quantity
+        off_mm = first.found.off_path_mm
+        if within_mm and (off_mm is None or off_mm > within_mm):
+            return f"none is known to keep within {length_text(within_mm)} of the path; {first.machine} is the most accurate."
+        return f"{first.machine} is the quickest{f' within {length_text(within_mm)} of the path' if within_mm else ''}."
 
     def _loaded(self, machine):
         self.session.machine = machine
