@@ -16,9 +16,8 @@ constexpr double kNoticedS = 0.003;
 constexpr int kNoticedCycles = 3;
 constexpr double kNoStep = 1e-9;  // what a transmission rounds
 constexpr double kFastDigits = 5;
-// Who turns round against its friction has twice what it was pulled loose with, and stick-slip takes a tenth of that. A
-// coarse digit that goes to and fro as well, because its loop hunts, takes as much each time.
-constexpr double kManyTimes = 20;
+constexpr double kNoisyDigits = 1.9;  // a digit at whose edge it stands flickers by one
+constexpr int kNoisyTurns = 6;
 
 }  // namespace
 
@@ -30,6 +29,7 @@ EncoderDigits::EncoderDigits(double fast, double period_s) noexcept
 void EncoderDigits::begin(double position, double effort) noexcept {
   last_ = position;
   last_step_ = 0;
+  noisy_turns_ = 0;
   same_ = fast_cycles_ = 0;
   stopped_dead_ = false;
   effort_.begin(effort);
@@ -56,17 +56,18 @@ void EncoderDigits::note(double position, double effort) noexcept {
 
 void EncoderDigits::note_step(double step) noexcept {
   if (std::abs(step) > kNoStep) digit_ = digit_ > 0 ? std::min(digit_, std::abs(step)) : std::abs(step);
-  if (step * last_step_ < 0) {
-    turns_ = std::min(turns_ + 1, kTurns);
-    turns_at_all_ = std::min(turns_at_all_ + 1, kTurns);
-  }
+  const bool turns = step * last_step_ < 0;
+  if (turns) turns_ = std::min(turns_ + 1, kTurns);
+  const double least = kNoisyDigits * digit_;
+  if (turns && std::min(std::abs(step), std::abs(last_step_)) > least)
+    noisy_turns_ = std::min(noisy_turns_ + 1, kNoisyTurns);
   const bool fast = fast_ > 0 && std::abs(step) > std::max(fast_, kFastDigits * digit_) && step * last_step_ > 0;
   fast_cycles_ = fast ? std::min(fast_cycles_ + 1, 2) : 0;
   last_step_ = step;
 }
 
-bool EncoderDigits::never_rested_so() const noexcept {
-  return turns_at_all_ >= kTurns && same_ > rests_cycles_ && effort_.width() >= kManyTimes * usual_;
+bool EncoderDigits::noisy() const noexcept {
+  return noisy_turns_ >= kNoisyTurns;
 }
 
 bool EncoderDigits::froze() const noexcept {

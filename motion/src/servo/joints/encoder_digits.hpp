@@ -37,9 +37,9 @@ class EncoderDigits {
   [[nodiscard]] double effort_change() const noexcept { return effort_.width(); }
   /// By which it did so while others lasted that ended: a digit is so coarse.
   [[nodiscard]] double usual_change() const noexcept { return usual_; }
-  /// Its last digit goes to and fro with rests between, as of a joint that creeps, and none of them was like this one:
-  /// the effort changes by many times what it did in any.
-  [[nodiscard]] bool never_rested_so() const noexcept;
+  /// It goes to and fro by several digits under control: it resolves so finely that it is never still for long,
+  /// whatever friction does, though it may rest for some milliseconds.
+  [[nodiscard]] bool noisy() const noexcept;
   /// The least step that there was; 0: there was none.
   [[nodiscard]] double digit() const noexcept { return digit_; }
 
@@ -51,11 +51,11 @@ class EncoderDigits {
   std::optional<double> last_{};
   double last_step_ = 0;       ///< that was none of 0
   int turns_ = 0;              ///< in which steps turned round, without a rest
+  int noisy_turns_ = 0;        ///< by two digits and more, before and after
   int fast_cycles_ = 0;        ///< on end
   bool stopped_dead_ = false;  ///< from a fast one
   std::int64_t same_ = 0;
   Range effort_{};
-  int turns_at_all_ = 0;
   double usual_ = 0, digit_ = 0;
 };
 

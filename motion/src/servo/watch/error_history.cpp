@@ -12,7 +12,7 @@ constexpr double kGrowsBy = 0.02;    // of the bound, in a sample: one word that
 constexpr double kStaysShare = 0.5;  // of what it was to go: less, and something holds it
 constexpr double kLeastWay = 0.05;   // mm or degrees: sound joints stand for so much where friction turns round
 constexpr double kFar = 0.25;        // of the error: what stands beside its setpoint trembles
-constexpr double kRunsOn = 0.8;      // as in WrongDirection: less, and the effort holds it better and better
+constexpr double kRunsOn = 0.9;      // as in WrongDirection: less, and the effort holds it better and better
 
 }  // namespace
 
@@ -74,11 +74,12 @@ bool ErrorHistory::pushes(std::size_t since, double error) const noexcept {
   return (sum / static_cast<double>(since) - ago(since).effort) * error > 0;
 }
 
-// One word that is wrong makes one step, from an error as it always was.
-bool ErrorHistory::is_no_step(double bound) const noexcept {
+// One word that is wrong makes one step, from an error as it was before.
+bool ErrorHistory::is_no_step(std::size_t since, double bound) const noexcept {
   const auto error_ago = [this](std::size_t k) { return std::abs(ago(k).position_set - ago(k).position); };
   const bool grows = error_ago(0) > error_ago(1) && error_ago(1) > error_ago(2) + kGrowsBy * bound;
-  return grows || std::max(error_ago(1), error_ago(2)) > kStaysShare * bound;
+  const double before = std::max(error_ago(1), error_ago(2));
+  return grows || before > std::max(kStaysShare * bound, error_ago(since) + kGrowsBy * bound);
 }
 
 ErrorHistory::Cause ErrorHistory::cause(double bound) const noexcept {
@@ -89,7 +90,7 @@ ErrorHistory::Cause ErrorHistory::cause(double bound) const noexcept {
   const double went = ago(0).position - ago(since).position;
   const double error = ago(0).position_set - ago(0).position;
   const bool behind = error * wanted > 0 && std::abs(wanted) > std::max(kStaysShare * bound, kLeastWay);
-  if (behind && pushes(since, error) && is_no_step(bound) && went * wanted < kStaysShare * wanted * wanted)
+  if (behind && pushes(since, error) && is_no_step(since, bound) && went * wanted < kStaysShare * wanted * wanted)
     return Cause::StandsStill;
   return Cause::Unknown;
 }

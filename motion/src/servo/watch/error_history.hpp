@@ -38,7 +38,7 @@ class ErrorHistory {
   [[nodiscard]] std::size_t wanted_since(double bound) const noexcept;
   [[nodiscard]] bool runs_away() const noexcept;
   [[nodiscard]] bool pushes(std::size_t since, double error) const noexcept;
-  [[nodiscard]] bool is_no_step(double bound) const noexcept;
+  [[nodiscard]] bool is_no_step(std::size_t since, double bound) const noexcept;
 
   int cycles_a_sample_;
   double period_s_;

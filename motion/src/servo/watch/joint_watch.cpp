@@ -1,12 +1,9 @@
 #include "servo/watch/joint_watch.hpp"
 
 #include <cmath>
+#include <optional>
 
 namespace rmac {
-
-void JointWatch::raise(ServoFault::Kind kind, double value, double bound, FaultSink& faults) const noexcept {
-  faults.raise({kind, ServoFault::Part::Joint, index_, value, bound});
-}
 
 namespace {
 
@@ -17,8 +14,10 @@ struct OneFault final : FaultSink {
 
 }  // namespace
 
-/// Who swings more and more changes its speed by more than it may, and with all its effort becomes faster than is
-/// believed. A reading that jumps makes a joint swing afterwards.
+void JointWatch::raise(ServoFault::Kind kind, double value, double bound, FaultSink& faults) const noexcept {
+  faults.raise({kind, ServoFault::Part::Joint, index_, value, bound});
+}
+
 bool JointWatch::comes_of_swing(const JumpSeen& jump) const noexcept {
   constexpr double kLittleMore = 2;
   const bool little = !jump.refused && std::abs(jump.jump) <= kLittleMore * joint_->bounds.jump;

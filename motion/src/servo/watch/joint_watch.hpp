@@ -51,6 +51,8 @@ class JointWatch {
   }
 
  private:
+  /// Who swings more and more changes its speed by more than it may, and with all its effort becomes faster than is
+  /// believed. A reading that jumps makes a joint swing afterwards.
   [[nodiscard]] bool comes_of_swing(const JumpSeen& jump) const noexcept;
   void watch_sensor(FaultSink& faults) const noexcept;
   void watch_contact(const JointSeen& seen, FaultSink& faults) const noexcept;

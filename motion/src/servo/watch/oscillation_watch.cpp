@@ -8,9 +8,7 @@ namespace rmac {
 
 namespace {
 
-// Of MaxEffort, peak to peak: less than a fifth does no harm, and cutting does that. A motor may give a tenth more than
-// it is said to.
-constexpr double kLeastSwing = 0.18;
+constexpr double kLeastSwing = 0.2;       // of MaxEffort, peak to peak: less does no harm, and cutting does that
 constexpr double kCurrentLoopS = 0.0002;  // by which a torque comes after its command: of a current loop of 800 Hz
 constexpr double kLeastTimeS = 0.03;      // over which a quick swing is looked at, for it is seen by samples
 constexpr double kSlowestTurnS = 0.06;    // what turns round less often is left to the following error

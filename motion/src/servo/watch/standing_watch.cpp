@@ -22,13 +22,12 @@ constexpr double kHoldsIt = 0.15;      // of MaxEffort, that friction takes wher
 constexpr double kToAndFro = 1.5;      // of the way that is left of it
 constexpr double kLeastRange = 0.1;    // of MaxFollowingError: a path that trembles by less is none to follow
 
-constexpr int kRestsCycles = 5;         // of the setpoint
-constexpr double kFrozenEffort = 0.03;  // of MaxEffort, by which it changes meanwhile
-constexpr double kAwayDigits = 10;      // that it was to go, where it never rested so
-constexpr double kFarDigits = 50;       // that it was to go: no flicker, and no friction, makes so much good
-constexpr double kFarEffort = 0.01;     // which is enough then
-constexpr double kStillS = 0.1;         // of an encoder whose last digit may rest, as a coarse one's
-constexpr double kStillEffort = 0.2;    // more than twice the friction, where the joint is to turn round
+constexpr int kRestsCycles = 5;                      // of the setpoint
+constexpr double kFrozenEffort = 0.03;               // of MaxEffort, by which it changes meanwhile
+constexpr double kAwayDigits = 10, kFarDigits = 50;  // that it was to go, where it is never still for long
+constexpr double kFarEffort = 0.01;                  // which is enough where that was far
+constexpr double kStillS = 0.1;                      // of an encoder whose last digit may rest, as a coarse one's
+constexpr double kStillEffort = 0.2;                 // more than twice the friction, where the joint is to turn round
 
 constexpr double kLimit = 0.98;     // of MaxEffort
 constexpr double kLimitS = 0.1;     // for which it gives all that
@@ -83,8 +82,9 @@ void StandingWatch::watch_digits(const ResponseSeen& seen, FaultSink& faults) co
   const double for_s = static_cast<double>(digits_.same()) * period_s_;
   const double away = seen.position_set - set_still_;
   const double digits_away = digits_.digit() > 0 ? std::abs(away) / digits_.digit() : 0;
-  const double least = digits_away > kFarDigits ? kFarEffort : kFrozenEffort;
-  if (froze() || (digits_away > kAwayDigits && digits_.never_rested_so())) {
+  const bool is_odd = digits_.noisy() && digits_away > kAwayDigits;
+  const double least = is_odd && digits_away > kFarDigits ? kFarEffort : kFrozenEffort;
+  if (froze() || is_odd) {
     if (for_s < kStandsS || changed < std::clamp(2 * usual, least, kStillEffort)) return;
     raise_frozen(faults);
   } else if (!slips() && for_s >= kStillS && changed >= kStillEffort && std::abs(away) > 2 * digits_.digit()) {

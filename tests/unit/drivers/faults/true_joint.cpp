@@ -68,20 +68,16 @@ std::optional<double> TrueJoint::Turns::step(double now, double least) {
 }
 
 void TrueJoint::look_at_swings() {
-  constexpr double kSwing = 0.2, kSmaller = kSwing * 5 / 6, kDecays = 0.8;
+  constexpr double kSwing = 0.2, kDecays = 0.8;
   constexpr int kSlowestTurn = 60;
-  if (++since_smaller_ > kSlowestTurn) chain = 0;
-  if (smaller_.step(effort_share(), kSmaller)) {
-    ++chain;
-    since_smaller_ = 0;
-  }
   if (since_swing > 0) ++since_swing;
-  if (since_swing > 0 && since_swing - last_turn_ > kSlowestTurn) since_swing = turns = last_turn_ = 0;
-  const std::optional<double> turned = large_.step(effort_share(), kSwing);
+  if (since_swing > 0 && since_swing - last_turn_ > kSlowestTurn) since_swing = turns = chain = last_turn_ = 0;
+  const std::optional<double> turned = swings_.step(effort_share(), kSwing);
   if (!turned) return;
   const double swing = std::abs(*turned - std::exchange(turned_at_, *turned));
   if (since_swing == 0) since_swing = 1;
   ++turns;
+  ++chain;
   last_turn_ = since_swing;
   last_swings_ = swing + swing_before_;
   swing_before_ = swing;

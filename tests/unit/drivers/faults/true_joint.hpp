@@ -35,8 +35,7 @@ class TrueJoint {
   // Swings of its motor's torque, by more than a fifth of the largest, peak to peak.
   int since_swing = 0;  ///< cycles since the first of those that follow each other within 60 ms
   int turns = 0;        ///< of them, since they decay no more
-  int chain =
-      0;  ///< of them all, and of those that are a sixth smaller: a motor gives what it does within some per cent
+  int chain = 0;        ///< of them all
   [[nodiscard]] bool still_swings() const;
   /// The path did so meanwhile, which turns the effort round as well.
   [[nodiscard]] bool path_speeds_up() const { return path_speeds_up_; }
@@ -57,8 +56,7 @@ class TrueJoint {
     /// One cycle: the extreme, where it turned.
     std::optional<double> step(double now, double least);
   };
-  Turns large_, smaller_;
-  int since_smaller_ = 0;
+  Turns swings_;
   double turned_at_ = 0, first_swings_ = 0, last_swings_ = 0, swing_before_ = 0;
   int last_turn_ = 0, away_ = 0;
   bool path_speeds_up_ = false;

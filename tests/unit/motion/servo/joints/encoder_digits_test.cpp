@@ -38,6 +38,21 @@ TEST_F(Digits, AreThoseOfAnEncoderThatRestsWhereTheyDidSoWithoutFreezing) {
   EXPECT_FALSE(digits_.froze()) << "its turns count anew";
 }
 
+TEST_F(Digits, AreNoisyWhereTheyGoToAndFroBySeveralUnderControl) {
+  const auto flicker = [this](double by) {
+    for (int i = 0; i < 40; ++i) digits_.note(i % 2 == 0 ? by : 0, 0);
+  };
+  digits_.note(1e-4, 0);
+  flicker(1e-4);
+  EXPECT_FALSE(digits_.noisy()) << "at the edge of one";
+  flicker(3e-4);
+  EXPECT_TRUE(digits_.noisy());
+  stay(0, 50);
+  EXPECT_TRUE(digits_.noisy()) << "also while it rests";
+  digits_.begin(0, 0);
+  EXPECT_FALSE(digits_.noisy()) << "what it did without power is no noise of it";
+}
+
 TEST_F(Digits, FreezeWhereAJointStopsDeadFromAFastWay) {
   tremble(2);
   for (int i = 1; i <= 3; ++i) digits_.note(0.02 * i, 0);

@@ -147,11 +147,17 @@ TEST_F(AnsweringJoint, StandsStillWhereItLeftItsBoundSwingingAgainstWhatHoldsIt)
 
 TEST_F(AnsweringJoint, LeavesItsBoundForNoReasonThatShowsWhereOneWordIsWrong) {
   joint_.max_following_error = 0.5;
-  for (int i = 0; i < 60; ++i) watch_.step({.effort = 20, .position = 0.03 * i, .position_set = 0.03 * i}, faults_);
-  watch_.step({.effort = 20, .position = 1.2, .position_set = 1.8, .out_of_bound = true}, faults_);
-  watch_.name_error(0.6, faults_);
-  ASSERT_FALSE(faults_.raised.empty());
-  EXPECT_EQ(faults_.raised[0].kind, Kind::FollowingError);
+  for (const double lag : {0.0, 0.1, 0.3}) {
+    watch_.rest();
+    faults_.raised.clear();
+    for (int i = 0; i < 60; ++i) {
+      watch_.step({.effort = 20, .position = 0.03 * i - lag, .position_set = 0.03 * i}, faults_);
+    }
+    watch_.step({.effort = 20, .position = 1.2, .position_set = 1.8, .out_of_bound = true}, faults_);
+    watch_.name_error(0.6, faults_);
+    ASSERT_FALSE(faults_.raised.empty());
+    EXPECT_EQ(faults_.raised[0].kind, Kind::FollowingError) << lag;
+  }
 }
 
 }  // namespace

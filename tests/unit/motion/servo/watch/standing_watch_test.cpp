@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "unit/motion/servo/recorded_faults.hpp"
 #include "unit/motion/servo/servo_fixture.hpp"
@@ -136,32 +137,54 @@ TEST_F(StandingJoint, IsBlockedByAllThatItsLoopAsksForThoughItsDriveTellsLess) {
   EXPECT_NEAR(cycles, 100, 3);
 }
 
-// At half a millimetre a minute its last digit goes on, to and fro, and rests for some milliseconds.
-TEST_F(StandingJoint, HasAFrozenEncoderWhereItCreptFromRestToRest) {
-  const auto creep = [](int i) { return 1e-4 * std::round(0.6 * (i / 8) + 0.9 * std::sin(2.1 * (i / 8))); };
-  for (int i = 0; i < 900; ++i) step(creep(i), 7.5e-6 * i, 100 + 0.3 * std::sin(0.8 * i));
-  const double stays = creep(899);
-  int cycles = 0;
-  double effort = 100;
-  while (faults_.raised.empty() && cycles < 3000) {
-    ++cycles;
-    effort = 100 + 0.05 * cycles;
-    step(stays, 7.5e-6 * (899 + cycles), effort);
+/// It creeps at half a millimetre a minute; its digits go to and fro by three, and rest for some milliseconds.
+class FineEncoder : public StandingJoint {
+ protected:
+  FineEncoder() {
+    for (; cycle_ < 300; ++cycle_) step(at(cycle_), set(cycle_), 100);
   }
+  static double at(int i) {
+    const double noise = i % 10 == 0 ? 3 : i % 10 == 1 ? -3 : i % 10 == 2 ? -2 : 0;
+    return 1e-4 * (std::round(0.75 * (i / 10)) + noise);
+  }
+  static double set(int i) { return 7.5e-6 * i; }
+  /// How much its effort changed until anything was found.
+  double freeze(double effort_a_cycle) {
+    const double stays = at(cycle_ - 1);
+    double change = 0;
+    for (; faults_.raised.empty() && change < 800; ++cycle_) step(stays, set(cycle_), 100 + (change += effort_a_cycle));
+    return change;
+  }
+  int cycle_ = 0;
+};
+
+TEST_F(FineEncoder, FreezesThoughItRestedAtTimesBefore) {
+  const double change = freeze(0.05);
   ASSERT_FALSE(faults_.raised.empty());
   EXPECT_EQ(faults_.raised[0].kind, Kind::EncoderFrozen);
-  EXPECT_LT(effort - 100, 0.031 * 800) << "before it is pushed through its friction";
+  EXPECT_LE(change, 0.031 * 800) << "before its joint is pushed through its friction";
 }
 
-// Its friction takes 80 N each way, and a digit of 10 um does not show how it gives way.
-TEST_F(StandingJoint, MayTurnRoundAgainstItsFrictionWithACoarseEncoder) {
-  double effort = 0, set = 0, position = 0;
+TEST_F(FineEncoder, FreezesByAHundredthOfItsEffortWhereItWasToGoFarMeanwhile) {
+  const double change = freeze(0.008);
+  ASSERT_FALSE(faults_.raised.empty());
+  EXPECT_EQ(faults_.raised[0].kind, Kind::EncoderFrozen);
+  EXPECT_NEAR(change, 0.01 * 800, 0.5) << "after 67 digits; 3 % would take three seconds";
+}
+
+// 40 N of friction; a digit of 5 um does not show how that gives way, and flickers by one as the joint is held before.
+TEST_F(StandingJoint, MayMoveAndTurnRoundAgainstItsFrictionWithACoarseEncoder) {
+  constexpr double kDigit = 5e-3, kStiffness = 600;
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0, 0.3);
+  double set = 0, position = 0;
   for (int i = 0; i < 30'000; ++i) {
-    set = 0.4 * std::sin(2 * 3.14159 * i / 6000.0);
-    effort += 0.3 * (set - position) * 2;
-    effort = std::clamp(effort, -80.0, 80.0);
-    if (std::abs(effort) == 80) position = set;
-    step(0.01 * std::round(position / 0.01), set, effort);
+    const bool held = i < 3000;
+    set = held ? 0 : 0.5 * std::sin(2e-3 * (i - 3000));
+    const double effort = std::clamp(kStiffness * (set - position), -40.0, 40.0);
+    if (std::abs(effort) == 40) position = set - std::copysign(40 / kStiffness, effort);
+    const double flicker = held && i / 7 % 2 == 0 ? kDigit : 0;
+    step(kDigit * std::round(position / kDigit) + flicker, set, effort + noise(random));
   }
   EXPECT_THAT(faults_.raised, IsEmpty());
 }
