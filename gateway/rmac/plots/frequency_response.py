@@ -3,8 +3,8 @@
 The record is of joints that went at steady speeds under SweptSineServoControlLaw, whose sine has the other sign in
 every second period. Of two periods one after the other, only odd lines are the answer to it (Pintelon and Schoukens,
 System Identification, 2nd ed., 5.2). Each pair fades in and out by the window of Hann, which leaves to an odd line half
-of itself and takes a quarter of its neighbours, that hold no answer. The even lines then hold a quarter of the answers
-beside them: how much is noise tells how pairs differ, line by line.
+of itself and takes a quarter of its neighbours, that hold no answer. How much is noise tells how pairs differ, line by
+line.
 
 mm, deg, s, N, N·m, Hz, as in docs/servo.md."""
 
@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.optimize import least_squares
-from scipy.stats import f as fisher
 from servo_model import period_of
 
 # A line whose answer is known no better than this (standard deviation over size) says nothing.
@@ -20,11 +19,9 @@ WORST_LINE = 0.5
 # Of the model: a line is never believed to better than this, because friction and cogging are not linear.
 LINE_SPREAD = 0.05
 # A further mode has to take so much of what the model leaves, and more than the best of its five numbers would take of
-# noise alone but once in so many joints that have no such mode.
+# noise alone, in squares of the lines' spread: 26 once in 10 000 places.
 WORTH_A_MODE = 0.6
-CHANCE_OF_A_MODE = 0.001
-# Neighbours to either side of a line whose spread its own is not less than: a few pairs tell that of one line badly.
-POOLED = 2
+NOISE_OF_A_MODE = 30
 MOST_MODES = 3
 FEWEST_LINES = 40
 # What is damped more is friction, not a mode.
@@ -46,7 +43,6 @@ class Response:
     frequency: np.ndarray
     value: np.ndarray
     spread: np.ndarray  # standard deviation of `value` over its size
-    freedom: float = 50.0  # degrees of freedom that `spread` was told by: as of six pairs of sines
 
     @property
     def coherence(self):
@@ -178,20 +174,7 @@ def _answer(lines, frequency):
     value = answers.mean(axis=0) / effort
     # Noise gets into the effort, too, by the loop: what counts is what no effort explains.
     unexplained = np.var(answers - value * efforts, axis=0, ddof=1) / len(answers)
-    spread = np.sqrt(unexplained) / np.abs(value * effort)
-    width = 2 * POOLED + 1
-    beside = np.sqrt(np.convolve(np.pad(spread**2, POOLED, mode="edge"), np.ones(width) / width, "valid"))
-    return Response(frequency, value, np.maximum(spread, beside), 2 * (len(answers) - 1) * width)
-
-
-def noise_of_a_mode(lines, freedom, chance=CHANCE_OF_A_MODE):
-    """The most that a further mode takes of noise in so many lines, in squares of their spread, but with this `chance`.
-
-    A line's two parts share its variance, so that of independent lines each of a mode's five numbers would take half a square of a normal
-    number. Lines behind the window of Hann are not: X(k)/2 - X(k-1)/4 - X(k+1)/4 has the variance 3/8 and with the next odd line, by the
-    even one between, the covariance 1/16, a sixth of that. In the direction in which it adds up noise is 1 + 2/6 of what it is line by
-    line. A spread that is itself told by few pairs makes of the squares Fisher's ratio; and there are as many places as lines."""
-    return 0.5 * (1 + 2 / 6) * 5 * fisher.isf(chance / lines, 5, min(freedom, 1e9))
+    return Response(frequency, value, np.sqrt(unexplained) / np.abs(value * effort))
 
 
 def _level(values):
@@ -206,11 +189,11 @@ def fit(response, period):
     if good.sum() < FEWEST_LINES:
         raise Unheard(f"only {good.sum()} of {len(good)} frequencies rise above noise; a larger sweep says more")
     lines = _Lines(2 * np.pi * response.frequency[good] * period, response.value[good], response.spread[good])
-    best, left, noise = None, np.inf, noise_of_a_mode(int(good.sum()), response.freedom)
+    best, left = None, np.inf
     for count in range(MOST_MODES + 1):
         found = lines.refine(lines.best_start(best[2:] if best is not None else [], with_mode=count > 0))
         cost = np.sum(lines.deviation(found) ** 2)
-        if cost > min(WORTH_A_MODE * left, left - noise) or lines.at_a_bound(found):
+        if cost > min(WORTH_A_MODE * left, left - NOISE_OF_A_MODE) or lines.at_a_bound(found):
             break
         best, left = found, cost
     shares = lines.shares(best)
