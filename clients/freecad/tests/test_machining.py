@@ -94,11 +94,11 @@ class MachiningTest(unittest.TestCase):
 
     def test_a_tool_that_is_wider_in_the_table_than_in_the_job_is_refused(self):
         operation_of(self.job, PathProfile, "Profile")
-        for radius, told in ((3.0, "6 mm in the tool table of DMACXYZ, and of 5 mm in TC: Default Tool.*0.5 mm off"), (2.4, "4.8 mm")):
+        for radius, told in ((3.0, "6 mm in the tool table of DMACXYZ, and of 5 mm in TC: Default Tool.*0.5 mm off"), (2.4, "4.8 mm"), (2.511, "0.011 mm off"), (2.489, "0.011 mm off")):
             self.client.cam.SetTool(1, 0.0, radius)
             with self.assertRaisesRegex(NotReady, told):
                 check_tools(tools_of(self.job), look(self.client))
-        for radius in (0.0, 2.499, 2.5):  # 0: nobody knows
+        for radius in (0.0, 2.491, 2.499, 2.5, 2.509):  # 0: nobody knows
             self.client.cam.SetTool(1, 0.0, radius)
             check_tools(tools_of(self.job), look(self.client))
 

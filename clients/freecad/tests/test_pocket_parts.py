@@ -25,6 +25,13 @@ GOUGE_MM = 0.002
 EVERY = 80  # of places along moves, 4 mm
 
 
+LEDGE = BLOCK.cut(Part.makeBox(40, 14, 10, at(0, 0, 10)))
+OPEN_TO_ONE_SIDE = BLOCK.cut(Part.makeBox(30, 18, 10, at(0, 6, 10)))
+SLOT = BLOCK.cut(Part.makeBox(40, 14, 10, at(0, 8, 10)))
+AROUND_A_BOSS = Part.makeBox(40, 30, 10).fuse(Part.makeCylinder(4, 10, at(20, 15, 10))).removeSplitter()
+APART_FROM_WALLS = BLOCK.cut(Part.makeBox(20, 30, 10, at(20, 0, 10))).cut(Part.makeBox(4, 30, 15, at(20, 0, 5)))  # with a channel between
+
+
 def trapezoid(at_floor, at_top):
     """A loft of rectangles, half as long and wide as that."""
     outlines = [Part.makePolygon([at(20 + x * i, 15 + y * j, z) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1))]) for (x, y), z in ((at_floor, 10), (at_top, 20))]
@@ -84,6 +91,41 @@ class PocketPartsTest(unittest.TestCase):
 
     def test_what_is_deeper_than_the_part_s_own_floor_is_refused(self):
         self.refused(MILLED, "4 mm into this floor", "depth of 10 mm", depth_mm=14.0)
+
+    def test_so_are_ledges_slots_and_whatever_else_has_the_part_above_it(self):
+        for number, shape in enumerate((LEDGE, OPEN_TO_ONE_SIDE, SLOT, AROUND_A_BOSS, APART_FROM_WALLS)):
+            with self.subTest(shape=number):
+                self.refused(shape, "4 mm into this floor", "depth of 10 mm", depth_mm=14.0)
+                self.check_clear(shape, self.cleared(shape).program)
+
+    def test_seeded_stairs_are_cut_deeper_from_their_top_alone(self):
+        for seed in range(8):
+            chance = np.random.default_rng(seed)
+            shape = BLOCK
+            for low in map(int, chance.choice(range(6, 18), 3, replace=False)):
+                x, y = (round(float(place), 3) for place in chance.uniform((0, 0), (30, 20)))
+                shape = shape.cut(Part.makeBox(*map(float, chance.uniform(8, 30, 2)), 20, at(x, y, low)))
+            for number, face in enumerate(shape.Faces, 1):
+                z = face.CenterOfMass.z
+                if z < 1 or face.BoundBox.ZLength > 1e-6:
+                    continue
+                with self.subTest(seed=seed, z=z):
+                    around = outline_of(self.feature(shape), f"Face{number}").around
+                    self.assertEqual(around.is_floor, z < max(vertex.Point.z for vertex in shape.Vertexes) - 1e-6)
+
+    def test_a_top_between_bent_walls_is_no_floor_though_their_boxes_are_higher(self):
+        ring = Part.makeTorus(10, 4).cut(Part.makeBox(60, 60, 9, at(-30, -30, 2)))
+        hump = Part.BSplineCurve()
+        hump.interpolate([at(0, 0, 0), at(0, 5, 8), at(0, 10, 3), at(0, 15, 9), at(0, 20, 0)])
+        humps = Part.Face(Part.Wire([hump.toShape(), Part.makeLine(at(0, 20, 0), at(0, 0, 0))])).extrude(at(30, 0, 0)).cut(Part.makeBox(60, 60, 9, at(-1, -1, 7)))
+        for shape, z in ((ring, 2), (humps, 7)):
+            with self.subTest(z=z):
+                self.assertGreater(shape.BoundBox.ZMax, z + 0.1)
+                self.assertFalse(outline_of(self.feature(shape), self.floor(shape, z)).around.is_floor)
+
+    def test_a_hole_in_a_ledge_is_no_island_of_it(self):
+        shape = LEDGE.cut(Part.makeCylinder(3, 30, at(20, 7, -1)))
+        self.assertAlmostEqual(self.cleared(shape).area_mm2, 40 * 14, 6)
 
     def test_a_top_face_is_cut_as_deep_as_is_wanted(self):
         top = self.feature(BLOCK)

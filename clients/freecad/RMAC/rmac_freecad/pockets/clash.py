@@ -19,7 +19,7 @@ MOST_POINTS = 400  # of an edge
 
 @dataclass(frozen=True)
 class Surroundings:
-    """Of the face that is cleared: the solids that it belongs to, where they stand, and whether walls rise from it all around."""
+    """Of the face that is cleared: the solids that it belongs to, where they stand, and whether the part is higher anywhere."""
 
     shape: Part.Shape
     face: str

@@ -29,8 +29,8 @@ class Outline:
 
 
 def outline_of(feature, face=""):
-    """Of a face, "Face3", of the object, whose inner wires are islands, but for ways down from a floor; else of all its edges, as of a sketch. Where it stands in the
-    document. Raises `PocketRefused`, and `ProfileRefused` where edges do not make contours."""
+    """Of a face, "Face3", of the object, whose inner wires are islands, but for ways down from what is below the part's top; else of all its edges, as of a
+    sketch. Where it stands in the document. Raises `PocketRefused`, and `ProfileRefused` where edges do not make contours."""
     wires, around = _wires_of_face(feature, face) if face else (_wires_of_edges(edges_of(feature)), None)
     contours = [_closed(contour_of(wire)) for wire in wires]
     z = contours[0].z
@@ -65,14 +65,15 @@ def _wires_of_face(feature, name):
 
 
 def _is_floor(shape, face):
-    """Whether walls rise from it all around."""
-    z = face.CenterOfMass.z
-    walls = [other for edge in face.OuterWire.Edges for other in shape.Faces if not other.isSame(face) and any(one.isSame(edge) for one in other.Edges)]
-    return bool(walls) and all(wall.BoundBox.ZMax > z + ABOVE_MM for wall in walls)
+    """Whether the part is higher anywhere: a ledge, a slot or a pocket, and no top face."""
+    z = face.CenterOfMass.z + ABOVE_MM
+    if any(vertex.Point.z > z for vertex in shape.Vertexes):
+        return True
+    return any(other.BoundBox.ZMax > z and other.optimalBoundingBox(False).ZMax > z for other in shape.Faces)  # bent ones: the first box may be too wide
 
 
 def _is_way_down(shape, face, wire):
-    """From a pocket's floor into a hole or a deeper pocket, with nothing standing above: no island."""
+    """From a floor into a hole or a deeper pocket, with nothing standing above: no island."""
     z, top = face.CenterOfMass.z, shape.BoundBox.ZMax
     above = Part.Face(wire).extrude(Vector(0, 0, top + 1 - z))
     above.translate(Vector(0, 0, ABOVE_MM))

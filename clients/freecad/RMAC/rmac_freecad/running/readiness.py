@@ -6,6 +6,8 @@ import rmac
 from rmac_freecad.jobs import lacking
 from rmac_freecad.jogging import is_machine_frame
 
+SAME_RADIUS_MM = 0.01  # of a tool that is planned and the one of the table
+
 
 class NotReady(Exception):
     """It says what to do."""
@@ -25,9 +27,6 @@ def look(client):
     if not client.state()["mechanism"]:
         raise NotReady("No machine is loaded; choose one by Select machine.")
     return MachineNow(client.machine(), client.cam.GetTools(), client.cam.GetPartFrame())
-
-
-SAME_RADIUS_MM = 0.01
 
 
 def check_tools(tools, now):
