@@ -11,10 +11,12 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 from scipy.optimize import minimize_scalar
-from scipy.signal import savgol_filter
+from scipy.signal import savgol_coeffs, savgol_filter
+from scipy.sparse import csr_matrix
 
 # Window of the polynomials that smooth and differentiate: longer than an encoder's noise, shorter than a jerk phase.
 WINDOW_S = 0.015
+POLYNOMIAL = 3
 # Below this share of the fastest speed of the record friction is not what it is at speed.
 SLOW_SHARE = 0.02
 LONGEST_DELAY_S = 0.01
@@ -30,7 +32,7 @@ AS_GOOD = 1.5
 
 @dataclass
 class Plant:
-    """What was found, and how well it explains the record."""
+    """What was found, and how much of the efforts' variance it explains; `by_place`: how much more what is the same at each place does."""
 
     mass: float
     viscous: float
@@ -38,6 +40,7 @@ class Plant:
     load: float
     delay_s: float
     explained: float = 1.0
+    by_place: float = 0.0
 
 
 class Unidentifiable(Exception):
@@ -70,7 +73,7 @@ def identify(time, position, effort, period=None, delay=None, window_s=WINDOW_S,
     window = max(5, int(round(window_s / period)) | 1)
     if len(position) < 20 * window:
         raise Unidentifiable(f"{len(position)} cycles are too few")
-    smooth = dict(window_length=window, polyorder=3)
+    smooth = dict(window_length=window, polyorder=POLYNOMIAL)
     velocity = savgol_filter(position, deriv=1, delta=period, **smooth)
     acceleration = savgol_filter(position, deriv=2, delta=period, **smooth)
     filtered = savgol_filter(effort, **smooth)
@@ -93,56 +96,75 @@ def identify(time, position, effort, period=None, delay=None, window_s=WINDOW_S,
         return np.interp(index - delay / period, index, filtered)[used]
 
     def at_best(delay, beside):
+        columns = _each(beside, matrix)
+
+        def solved(delay):
+            return _solve(columns, beside(effort_at(delay)))
+
         if delay is None:
             grid = np.arange(0, LONGEST_DELAY_S, period)  # between two cycles noise is less, which makes valleys of its own
-            best = grid[_earliest_valley([_solve(matrix, effort_at(at), beside)[1] for at in grid])]
-            delay = minimize_scalar(lambda d: _solve(matrix, effort_at(d), beside)[1],
-                                    bounds=(max(0, best - period), best + period), method="bounded").x
-        return float(delay), *_solve(matrix, effort_at(delay), beside)
+            best = grid[_earliest_valley([solved(at)[1] for at in grid])]
+            delay = minimize_scalar(lambda d: solved(d)[1], bounds=(max(0, best - period), best + period), method="bounded").x
+        return float(delay), *solved(delay)
 
-    best, (mass, viscous, friction, load), left = at_best(delay, lambda values: values)
+    def beside(values):
+        return values
+
+    best, (mass, viscous, friction, load), left = at_best(delay, beside)
     total = float(np.sum((effort_at(best) - effort_at(best).mean()) ** 2))
     if left > (1 - LITTLE_EXPLAINED) * total:
-        beside = _beside_places(position, smooth, used)
-        best, (mass, viscous, friction, _), left = at_best(delay, beside)
+        beside = _beside_places(position, window, used)
+        best, (mass, viscous, friction, _), _ = at_best(delay, beside)
         if wanted is not None:
             mass, viscous, friction = _as_sent(matrix, effort_at(best), savgol_filter(wanted, deriv=1, delta=period, **smooth)[used],
                                                savgol_filter(wanted, deriv=2, delta=period, **smooth)[used], beside)
         load = float(np.mean(effort_at(best) - matrix[:, :3] @ (mass, viscous, friction)))
     if not mass > 0:
         raise Unidentifiable("the accelerations do not tell its mass; give it more travel")
-    return Plant(float(mass), max(float(viscous), 0.0), max(float(friction), 0.0), float(load), best,
-                 1 - left / total)
+    plant = Plant(float(mass), max(float(viscous), 0.0), max(float(friction), 0.0), float(load), best)
+    left = effort_at(best) - matrix @ (plant.mass, plant.viscous, plant.friction, plant.load)
+    total = float(np.sum((effort_at(best) - effort_at(best).mean()) ** 2))
+    plant.explained = 1 - float(left @ left) / total
+    plant.by_place = float(left @ left - np.sum(beside(left) ** 2)) / total
+    return plant
 
 
-def _solve(matrix, right, beside):
-    """Numbers that leave the least of `right`, and how much; `beside` takes away what is not theirs."""
-    columns = np.column_stack([beside(column) for column in matrix.T])
-    wanted = beside(right)
-    found, *_ = np.linalg.lstsq(columns, wanted, rcond=None)
-    return found, float(np.sum((columns @ found - wanted) ** 2))
+def _each(beside, columns):
+    return np.column_stack([beside(column) for column in columns.T])
+
+
+def _solve(columns, right):
+    """Numbers that leave the least of `right`, and how much."""
+    found, *_ = np.linalg.lstsq(columns, right, rcond=None)
+    return found, float(np.sum((columns @ found - right) ** 2))
 
 
 def _as_sent(matrix, right, speed, acceleration, beside):
     """Mass, viscous and sliding friction by what the joint was sent: what an encoder's error, or whatever shakes the joint, does to
     motion and effort alike by way of the loop has no part in that (instrumental variables; Söderström and Stoica, System Identification,
     1989, chapter 8)."""
-    instruments = np.column_stack([beside(column) for column in (acceleration, speed, np.sign(speed))])
-    columns = np.column_stack([beside(column) for column in matrix[:, :3].T])
+    instruments = _each(beside, np.column_stack([acceleration, speed, np.sign(speed)]))
+    columns = _each(beside, matrix[:, :3])
     return np.linalg.lstsq(instruments.T @ columns, instruments.T @ beside(right), rcond=None)[0]
 
 
-def _beside_places(position, smooth, used):
-    """What takes away all that goes by the place: a polygon over the way, which passes the filter as efforts do."""
+def _beside_places(position, window, used):
+    """What takes away all that goes by the place: a polygon over the way, which passes the filter as efforts do. A joint is near few of
+    its corners at a time, so most of the numbers are 0."""
     place = (position - position.min()) / np.ptp(position) * PLACES
     below = np.minimum(place.astype(int), PLACES - 1)
-    hats = np.zeros((len(position), PLACES + 1))
-    rows = np.arange(len(position))
-    hats[rows, below + 1] = place - below
-    hats[rows, below] = 1 - hats[rows, below + 1]
-    left, size, _ = np.linalg.svd(savgol_filter(hats, axis=0, **smooth)[used], full_matrices=False)
-    basis = left[:, size > 1e-3 * size[0]]
-    return lambda values: values - basis @ (basis.T @ values)
+    rows, beyond = np.arange(len(position)), place - below
+    hats = csr_matrix((np.concatenate([1 - beyond, beyond]), (np.tile(rows, 2), np.concatenate([below, below + 1]))),
+                      shape=(len(position), PLACES + 1))
+    weights, cycles = savgol_coeffs(window, POLYNOMIAL), np.flatnonzero(used).astype(np.int32)
+    near = cycles[:, None] + (np.arange(window, dtype=np.int32) - window // 2)
+    smoothing = csr_matrix((np.tile(weights, len(cycles)), near.ravel(), np.arange(len(cycles) + 1, dtype=np.int32) * np.int32(window)),
+                           shape=(len(cycles), len(position)))
+    places = smoothing @ hats
+    size, corners = np.linalg.eigh((places.T @ places).toarray())
+    kept = size > 1e-6 * size[-1]
+    corners = corners[:, kept] / np.sqrt(size[kept])
+    return lambda values: values - places @ (corners @ (corners.T @ (places.T @ values)))
 
 
 def _earliest_valley(left):

@@ -17,6 +17,9 @@ namespace {
 /// nothing but noise may be left to explain.
 constexpr double kUnderstood_percent = 98;
 
+/// Of a record: less of it that goes by the place is not worth a word.
+constexpr double kMuchByPlace = 0.001;
+
 using Json = nlohmann::json;
 
 void print_filters(const Json& filters) {
@@ -90,9 +93,13 @@ void print_tuning(const Json& found, const std::string& picture) {
   const char* const way = turns ? "deg" : "mm";
   fmt::print(
       "joint {}: mass {:.4g} {}·s²/{}, friction {:.3g} {} and {:.3g} {}·s/{}, load {:.3g} {}, delay {:.2f} ms; the "
-      "model explains {:.2f} % of the record\n",
+      "model explains {:.2f} % of the record{}\n",
       found["joint"].get<std::string>(), number("mass"), effort, way, number("friction"), effort, number("viscous"),
-      effort, way, number("load"), effort, 1e3 * number("delay_s"), 100 * number("explained"));
+      effort, way, number("load"), effort, 1e3 * number("delay_s"), 100 * number("explained"),
+      number("by_place") >= kMuchByPlace
+          ? fmt::format(", what goes by the place, as a motor's cogging and cables do, {:.2f} % more",
+                        100 * number("by_place"))
+          : "");
   for (const Json& mode : found["resonances"]) {
     fmt::print("resonance at {:.1f} Hz, damping {:.3f}\n", mode["frequency"].get<double>(),
                mode["damping"].get<double>());

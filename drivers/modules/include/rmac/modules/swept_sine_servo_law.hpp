@@ -20,7 +20,7 @@ class SweptSineServoLaw final : public ServoLaw {
  public:
   SweptSineServoLaw(const ErrorSignal::Parameters& signal, const SweptSine::Parameters& sweep,
                     const FilterInverse::Parameters& filters, double load)
-      : feedback_(signal), sweep_(sweep), inverse_(filters), load_(load) {}
+      : feedback_(signal), sweep_(sweep), inverse_(filters), load_(load), effort_(sweep.effort) {}
 
   [[nodiscard]] std::span<const GainInfo> gains() const noexcept override { return kGains; }
 
@@ -30,7 +30,11 @@ class SweptSineServoLaw final : public ServoLaw {
     return true;
   }
 
-  void set_effort_limit(double effort) noexcept override { limit_ = std::abs(effort); }
+  void set_effort_limit(double effort) noexcept override {
+    limit_ = std::abs(effort);
+    const double most = effort_ > 0 ? kSineShare * limit_ / effort_ : 1;
+    larger_ = std::clamp((most - 1) / (FilterInverse::kMost - 1), 0.0, 1.0);
+  }
 
   [[nodiscard]] double resting_effort() const noexcept override { return load_; }
 
@@ -40,17 +44,24 @@ class SweptSineServoLaw final : public ServoLaw {
 
   [[nodiscard]] double update(const ServoInput& input) noexcept override {
     if (!is_finite(input)) return std::numeric_limits<double>::quiet_NaN();
-    return feedback_.update(input, load_ + inverse_.step(sweep_.step(input), input.period_s), limit_);
+    const double sine = sweep_.step(input);
+    const double larger = inverse_.step(sine, input.period_s);
+    return feedback_.update(input, load_ + sine + larger_ * (larger - sine), limit_);
   }
 
  private:
   static constexpr std::array<GainInfo, 3> kGains{{{"Kp", "N/mm"}, {"Ki", "N/(mm·s)"}, {"Kd", "N·s/mm"}}};
 
+  /// Of the effort limit; the rest is the feedback's, which would be lost where the sine alone reaches the limit.
+  static constexpr double kSineShare = 0.5;
+
   PidFeedback feedback_;
   SweptSine sweep_;
   FilterInverse inverse_;
   double load_;
+  double effort_;  ///< of the sine
   double limit_ = 0;
+  double larger_ = 0;  ///< how much of what the inverse adds fits into `kSineShare`, 0 to 1
 };
 
 /// Makes a `SweptSineServoLaw`; parameters of `PidServoLawFactory`, and `sweep_effort`, `sweep_from_hz`, `sweep_to_hz`,
