@@ -18,6 +18,7 @@ constexpr double kSlowHz = 40, kGrows = 1.3;
 // Where a loop gives back no more than friction takes, the work is next to nothing, and half a cycle by which effort
 // and way are apart decides on its sign. What holds back a force from outside is far below.
 constexpr double kResists = 0.12;
+constexpr int kQuicker = 4;
 constexpr double kKept = 0.85;     // of the work until then, at each turn
 constexpr double kRises = 1.05;    // since the first turns: it grows, if slowly
 constexpr double kPathTurn = 0.1;  // of the largest acceleration that the path asks for
@@ -106,7 +107,16 @@ void OscillationWatch::step(const OscillationSeen& seen, FaultSink& faults) noex
     ++path_turned_;
     ++path_chain_;
   }
-  if (turns) add_turn();
+  if (turns) {
+    // Much quicker all at once is another swing, as a word that comes twice leaves one of some cycles.
+    const std::int64_t gap = cycles_ - last_turn_;
+    if (turned_ > 1 && kQuicker * gap < last_gap_) {
+      begin();
+      ++cycles_;
+    }
+    last_gap_ = gap;
+    add_turn();
+  }
   if (static_cast<double>(cycles_ - last_turn_) * period_s_ > kSlowestTurnS) {
     chain_ = path_chain_ = 0;
     return begin();

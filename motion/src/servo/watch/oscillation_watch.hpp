@@ -71,6 +71,7 @@ class OscillationWatch {
   double most_acceleration_ = 0;
   std::int64_t cycles_ = 0;
   std::int64_t last_turn_ = 0;
+  std::int64_t last_gap_ = 0;  ///< cycles between the last two turns
   struct {
     std::array<double, kCompared> latest{};
     double first = 0;  ///< the sum of so many

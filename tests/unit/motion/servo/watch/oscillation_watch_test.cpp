@@ -204,6 +204,19 @@ TEST_F(SwingingJoint, IsFoundThoughABlowBeganIt) {
   }
 }
 
+// A position that comes twice is a speed of nothing, and then of twice as much, to a loop.
+TEST_F(SwingingJoint, IsNoneWhereAWordThatComesTwiceShakesItBehindAPush) {
+  const auto effort = [](double t) {
+    const int cycle = static_cast<int>(std::lround(1000 * t));
+    constexpr std::array kShakes{700.0, -790.0, 600.0, -400.0, 250.0, -200.0, 100.0};
+    const int shaken = cycle - 40;
+    return 300 * std::sin(kTurn * std::min(t, 0.04) / 0.03) +
+           (shaken >= 0 && shaken < 7 ? kShakes.at(static_cast<std::size_t>(shaken)) : 0);
+  };
+  t_ = 0;
+  EXPECT_EQ(run(200, effort, nothing), -1);
+}
+
 TEST_F(SwingingJoint, WithoutABoundOfItsEffortIsNotWatched) {
   joint_.max_effort = 0;
   EXPECT_EQ(run(500, nothing, nothing), -1);
