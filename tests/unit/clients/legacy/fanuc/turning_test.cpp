@@ -228,7 +228,7 @@ TEST(FanucTilt, LeavesUnknownHowTheMachinesAxesLieWhereATableWentToItsReference)
         refusal_of(program_of(tilted + "G28 A0\n" + up), options),
         testing::AllOf(StartsWith("7:"), HasSubstr("where axis A stands behind G28 is not known here; write A")))
         << "it would go along the table as it was tilted before: " << up;
-    EXPECT_EQ(refusal_of(program_of(tilted + "G28 A0\nG90 G0 A0 C0\nG91 " + up), options), "taken") << up;
+    EXPECT_EQ(refusal_of(program_of(tilted + "G28 A0\nG90 G0 A0 C0\nG91\n" + up), options), "taken") << up;
   }
   EXPECT_EQ(refusal_of(program_of(tilted + "G28 Z0\nG28 A0"), options), "taken") << "up before it turns";
   EXPECT_EQ(ends_of(tilted + "G28 Z0 A0", options), ends_of(tilted + "G28 Z0", options)) << "up while it turns";

@@ -110,7 +110,8 @@ TEST(Rs274Offset, UsesAxisWordsThatNoMotionBesideItHas) {
       EXPECT_THAT(refusal_of(program_of(fmt::format("{} {} X1 F100", motion, setter))),
                   HasSubstr("would both use the axis words; write two blocks"))
           << motion << " " << setter;
-    EXPECT_THAT(ends_of(fmt::format("G1 X0\n{} X1", setter)), testing::SizeIs(1)) << "no motion of its own: " << setter;
+    EXPECT_THAT(ends_of(fmt::format("G1 X2\n{} X1 Y0 Z0", setter)), testing::SizeIs(1))
+        << "no motion of its own: " << setter;
   }
 }
 
