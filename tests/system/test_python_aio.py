@@ -74,6 +74,46 @@ class PythonAioTest(unittest.IsolatedAsyncioTestCase):
         self.assertGreaterEqual(rest[0], 50)
         self.assertAlmostEqual((await self.client.state())["joints"][0], 39.9, places=2)
 
+    async def test_a_program_that_was_sent_in_part_is_not_told_as_not_sent(self):
+        def program():
+            yield from (rmac.MoveTo((x, 0, 0)) for x in range(1, 10))
+            self.cut()
+            yield rmac.MoveTo((0, 0, 0))
+
+        async with self.client.authority():
+            await self.client.load("DMACXYZ")
+            await self.client.cam.SetFeedrate(1800)
+            with self.assertRaises(rmac.Interrupted) as lost:
+                await (await self.client.run(program())).wait()
+        self.assertNotIn("nothing of this was sent", str(lost.exception))
+        self.assertRegex(str(lost.exception), "it was cut; [0-9]+ moves of the program were known to be done, [0-9]+ taken; reconnect, then resume")
+
+    async def test_an_error_of_the_program_is_told_also_where_the_connection_was_lost(self):
+        def bad_move():
+            yield rmac.MoveTo((float("nan"), 0, 0))
+
+        def own_error():
+            raise rmac.InvalidValue("this pocket has no floor")
+            yield
+
+        for broken, told in ((bad_move, "nan"), (own_error, "no floor")):
+            with self.subTest(told):
+
+                def program():
+                    yield rmac.MoveTo((1, 0, 0))
+                    self.cut()
+                    yield from broken()
+
+                async with self.client.authority():
+                    await self.client.load("DMACXYZ")
+                    with self.assertRaisesRegex(rmac.InvalidValue, told):
+                        await (await self.client.run(program())).wait()
+                await self.client.reconnect()
+
+    def cut(self):
+        """Ends the connection before anything else runs in the loop."""
+        self.client._connection._finish(rmac.ConnectionLost("it was cut"))
+
     async def test_what_cannot_be_reached_or_is_lost_is_told(self):
         with self.assertRaisesRegex(rmac.CannotConnect, "no such file"):
             await rmac.aio.connect("unix:/nowhere")

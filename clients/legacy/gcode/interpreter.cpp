@@ -28,11 +28,6 @@ bool sets_coordinates(int once) {
   return once == 100 || once == 520 || (once >= 920 && once <= 923);
 }
 
-/// Whose X, Y and Z are no end of a motion.
-bool takes_axes(int once) {
-  return once == 100 || once == 280 || once == 300 || once == 520 || once == 920;
-}
-
 double unit_of(const Code& units) {
   return units.number == 200 || units.number == kInchOfMach ? kInch_mm : 1;
 }
@@ -276,8 +271,6 @@ void Interpreter::act_once(Block& block) {
 
 void Interpreter::move(Block& block) {
   const auto& motion = block.g(GGroup::Motion);
-  const auto& once = block.g(GGroup::Once);
-  const bool axes_are_taken = once && takes_axes(once->number);
   if (motion) {
     const bool only_mode = (motion->number == 0 || motion->number == 10) && !block.has_any("XYZ") && !mover_.turns();
     const bool ends_cycle = motion->number == Modes::kNoMotion;
@@ -286,7 +279,7 @@ void Interpreter::move(Block& block) {
     modes_.motion = ends_cycle && rules_.motion_outlives_cycles ? modes_.interpolation : motion->number;
     if (!(ends_cycle && rules_.motion_outlives_cycles)) return;
   }
-  if (axes_are_taken || !(block.has_any("XYZ") || mover_.turns())) return;
+  if (block.axes_are_taken() || !(block.has_any("XYZ") || mover_.turns())) return;
   const char letter = block.has('X') ? 'X' : block.has('Y') ? 'Y' : 'Z';
   const std::size_t place = block.has(letter) ? block.use(letter).place : 0;
   if (modes_.motion == Modes::kNoMotion) refuse(place, "no G0, G1 or other motion is in force that could use this");

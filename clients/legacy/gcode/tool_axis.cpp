@@ -84,11 +84,15 @@ void ToolAxis::leave_for_reference(const Block& block) {
   }
 }
 
+void ToolAxis::require_none_at_reference(std::size_t place) const {
+  if (!at_reference_) return;
+  refuse(place,
+         fmt::format("where axis {0} stands behind G28 is not known here; write {0} before this move", *at_reference_));
+}
+
 void ToolAxis::require_coordinates_of_part(std::size_t place) const {
   if (modes_.centre_point == ToolCentrePoint::Vectors) return;
-  if (at_reference_)
-    refuse(place, fmt::format("where axis {0} stands behind G28 is not known here; write {0} before this move",
-                              *at_reference_));
+  require_none_at_reference(place);
   if (modes_.centre_point == ToolCentrePoint::Angles || turning_.tilted()) return;
   if (turn_ == legacy::Placement{} && mover_.axis() == legacy::unit_axis(2)) return;
   if (turntable_.carries(angles_) && (mover_.turns() || mover_.axis() == turn_.z)) return;
@@ -106,11 +110,11 @@ void ToolAxis::require_axes_of_machine(const Block& block, std::size_t place) co
            "--rotary C,A with the axes that turn the tool, and --rotary-centre where they turn a table");
   const bool has_table =
       std::ranges::any_of(options_.rotary, [](const auto& axis) { return axis.centre_mm.has_value(); });
+  if (has_table) require_none_at_reference(place);
   if (!has_table || !turntable_.carries(angles_)) {
     const bool beside_z = block.has_any("XY") || !block.has('Z');
     const auto moves_axes = [this, beside_z](const RotaryAxis& axis) {
-      const bool stands = angles_.at(index_of(axis.letter)).value_or(0) == 0;
-      return axis.centre_mm.has_value() && !stands && (axis.letter != 'C' || beside_z);
+      return axis.centre_mm.has_value() && !is_upright(axis, angles_) && (axis.letter != 'C' || beside_z);
     };
     if (std::ranges::none_of(options_.rotary, moves_axes)) return;
     refuse(place,

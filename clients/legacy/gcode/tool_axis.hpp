@@ -46,6 +46,8 @@ class ToolAxis {
 
   /// Throws a Refusal where A, B and C turned the part below the tool, or away from it.
   void require_coordinates_of_part(std::size_t place) const;
+  /// Throws a Refusal as long as an axis stands where G28 took it.
+  void require_none_at_reference(std::size_t place) const;
   void read_angles(Block& block, int motion);
   void leave_for_reference(const Block& block);
   void read_vector(Block& block, int motion);

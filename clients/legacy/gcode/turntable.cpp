@@ -16,13 +16,17 @@ constexpr double kTurn_degrees = 360;
 
 }  // namespace
 
+bool is_upright(const RotaryAxis& axis, const KnownAngles& angles) {
+  return std::fmod(angles.at(index_of(axis.letter)).value_or(0), kTurn_degrees) == 0;
+}
+
 TableAngles zeros_for_unknown(const KnownAngles& angles) {
   return {angles[0].value_or(0), angles[1].value_or(0), angles[2].value_or(0)};
 }
 
 bool Turntable::carries(const KnownAngles& angles) const {
   const auto is_upright_or_table = [&angles](const RotaryAxis& axis) {
-    return axis.centre_mm || std::fmod(angles.at(index_of(axis.letter)).value_or(0), kTurn_degrees) == 0;
+    return axis.centre_mm || is_upright(axis, angles);
   };
   const auto is_table = [](const RotaryAxis& axis) { return axis.centre_mm.has_value(); };
   return std::ranges::any_of(options_.rotary, is_table) && std::ranges::all_of(options_.rotary, is_upright_or_table);

@@ -18,6 +18,8 @@ using KnownAngles = std::array<std::optional<double>, 3>;
 [[nodiscard]] constexpr std::size_t index_of(char letter) {
   return static_cast<std::size_t>(letter - 'A');
 }
+/// Whether an axis stands as it does at 0, where it is taken to be as long as nobody says otherwise.
+[[nodiscard]] bool is_upright(const RotaryAxis& axis, const KnownAngles& angles);
 [[nodiscard]] TableAngles zeros_for_unknown(const KnownAngles& angles);
 
 /// A table that A, B and C turn, under X, Y and Z of a machine whose tool stands upright: those axes of --rotary of

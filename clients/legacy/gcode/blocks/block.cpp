@@ -10,14 +10,6 @@
 
 namespace rmac::gcode {
 
-namespace {
-
-bool is_axis_setter(const Block& block) {
-  return block.once(100) || block.once(920) || block.once(280) || block.once(300);
-}
-
-}  // namespace
-
 std::string g_name(int tenfold) {
   return tenfold % 10 == 0 ? fmt::format("G{}", tenfold / 10) : fmt::format("G{}.{}", tenfold / 10, tenfold % 10);
 }
@@ -76,13 +68,18 @@ void Block::add_m(const MCode& code, std::size_t place) {
 
 void Block::check_together() const {
   const auto& motion = g(GGroup::Motion);
-  if (motion && motion->number != 800 && is_axis_setter(*this)) {
+  if (motion && motion->number != 800 && axes_are_taken()) {
     refuse(motion->place, fmt::format("{} and {} would both use the axis words; write two blocks",
                                       g_name(motion->number), g_name(g(GGroup::Once)->number)));
   }
   if (const auto& off = m(MGroup::CoolantOff); off && (m(MGroup::Mist) || m(MGroup::Flood))) {
     refuse(off->place, "coolant on and off in one block; write two blocks");
   }
+}
+
+bool Block::axes_are_taken() const {
+  constexpr std::array kTaking{100, 280, 300, 520, 920};
+  return std::ranges::any_of(kTaking, [this](int tenfold) { return once(tenfold); });
 }
 
 bool Block::has_any(std::string_view letters) const noexcept {

@@ -46,6 +46,8 @@ class Block {
   [[nodiscard]] const std::optional<Code>& m(MGroup group) const { return m_.at(static_cast<std::size_t>(group)); }
   /// Whether the one code of group 0 is this one.
   [[nodiscard]] bool once(int tenfold) const { return g(GGroup::Once) && g(GGroup::Once)->number == tenfold; }
+  /// Whether G10, G28, G30, G52 or G92 has X, Y and Z, which are no end of a motion then.
+  [[nodiscard]] bool axes_are_taken() const;
 
   /// How many codes it has.
   [[nodiscard]] std::size_t codes() const noexcept { return codes_; }

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncGenerator, AsyncIterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import AsyncGenerator, AsyncIterator, Awaitable
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rmac.errors import RmacError
 from rmac.hearing import Hearer
@@ -16,6 +16,8 @@ from rmac.wire.exchange import Outcome
 
 if TYPE_CHECKING:
     from rmac.aio.client import Client
+
+T = TypeVar("T")
 
 
 class Run:
@@ -104,16 +106,24 @@ class Run:
 
     async def _step(self) -> None:
         self._changed.clear()
+        if batch := self._stream.next_batch():
+            await self._unless_lost(self._client.send_batch(batch, self))
+        elif self._stream.asks_state:
+            state = await self._unless_lost(self._client.state())
+            if state is None:
+                return
+            self._stream.confirm(state)
+            if self._stream.asks_state:
+                await asyncio.sleep(1 / STATE_RATE_HZ)
+        elif not (self._stream.ended or self._stream.ledger.finished):
+            await self._changed.wait()
+
+    async def _unless_lost(self, asked: Awaitable[T]) -> T | None:
+        """None where the connection is lost by then, which the stream is told."""
         try:
-            if batch := self._stream.next_batch():
-                await self._client.send_batch(batch, self)
-            elif self._stream.asks_state:
-                self._stream.confirm(await self._client.state())
-                if self._stream.asks_state:
-                    await asyncio.sleep(1 / STATE_RATE_HZ)
-            elif not (self._stream.ended or self._stream.ledger.finished):
-                await self._changed.wait()
+            return await asked
         except RmacError:
             if self._client.lost is None:
                 raise
             self.set_exception(self._client.lost)
+            return None

@@ -111,6 +111,15 @@ TEST(FanucOffset, OfALocalSystemHoldsInAllAndEndsByG92) {
               ElementsAre(ElementsAre(1, 0, 10), ElementsAre(2, 0, 10)));
 }
 
+TEST(FanucOffset, UsesAxisWordsThatNoMotionBesideItHas) {
+  for (const char* setter : {"G10 L2 P1", "G52", "G92"}) {
+    for (const char* motion : {"G0", "G1", "G2", "G81"})
+      EXPECT_THAT(refusal_of(program_of(fmt::format("{} {} X1.", motion, setter))),
+                  StartsWith(fmt::format("5:1: {} and {} would both use the axis words", motion,
+                                         std::string_view(setter).substr(0, 3))));
+  }
+}
+
 TEST(FanucReference, IsInTheFrameOfTheBegin) {
   Options options;
   options.reference_mm = options.second_reference_mm = {{100, 200, 300}};

@@ -205,6 +205,35 @@ TEST(FanucTilt, TakesTheMachinesZAloneAlongATurnedTableBelowATiltedHead) {
   EXPECT_THAT(refusal_of(program_of(tilted + "G28 X0"), options), HasSubstr("a table is turned below a tilted tool"));
 }
 
+TEST(FanucTilt, TakesATableThatMadeWholeTurnsAsOneThatStands) {
+  Options options;
+  options.rotary = {{'C', 1, {{0, 0, 0}}}, {'B', 1}};
+  options.reference_mm = {{0, 0, 200}};
+  const auto retracted = [](int turns) {
+    return fmt::format("G43.4\nG0 X10. Y0 Z50. B30. C{}.\nG49\nG91 G28 X0 Z0", turns * 360);
+  };
+  const auto end = ends_of(retracted(0), options).back();
+  for (const int turns : {-2, -1, 1, 3}) EXPECT_EQ(ends_of(retracted(turns), options).back(), end) << turns;
+  EXPECT_THAT(refusal_of(program_of("G43.4\nG0 X10. Y0 Z50. B30. C361.\nG49\nG91 G28 X0"), options),
+              HasSubstr("a table is turned below a tilted tool"));
+}
+
+TEST(FanucTilt, LeavesUnknownHowTheMachinesAxesLieWhereATableWentToItsReference) {
+  Options options;
+  options.rotary = {{'C', 1, {{0, 0, -20}}}, {'A', 1, {{0, 0, -20}}}};
+  options.reference_mm = options.second_reference_mm = {{0, 0, 200}};
+  const std::string tilted = "G0 A30. C0\nG91 ";
+  for (const char* up : {"G28 Z0", "G30 Z0", "G28 X0 Y0 Z0", "G90 G53 Z0"}) {
+    EXPECT_THAT(
+        refusal_of(program_of(tilted + "G28 A0\n" + up), options),
+        testing::AllOf(StartsWith("7:"), HasSubstr("where axis A stands behind G28 is not known here; write A")))
+        << "it would go along the table as it was tilted before: " << up;
+    EXPECT_EQ(refusal_of(program_of(tilted + "G28 A0\nG90 G0 A0 C0\nG91\n" + up), options), "taken") << up;
+  }
+  EXPECT_EQ(refusal_of(program_of(tilted + "G28 Z0\nG28 A0"), options), "taken") << "up before it turns";
+  EXPECT_EQ(ends_of(tilted + "G28 Z0 A0", options), ends_of(tilted + "G28 Z0", options)) << "up while it turns";
+}
+
 TEST(FanucToolAxis, StandsWhereNobodyKnowsBehindG28) {
   Options options;
   options.rotary = {{'A', 1}};

@@ -104,6 +104,17 @@ TEST(Rs274Offset, OfG52IsAbsoluteAndStandsWhereThatOfG92Does) {
   EXPECT_THAT(ends_of("G52 X1\nG92.2\nG92.3\nG0 X6"), ElementsAre(ElementsAre(7, 0, 10)));
 }
 
+TEST(Rs274Offset, UsesAxisWordsThatNoMotionBesideItHas) {
+  for (const char* setter : {"G10 L2 P1", "G52", "G92"}) {
+    for (const char* motion : {"G0", "G1", "G2", "G81"})
+      EXPECT_THAT(refusal_of(program_of(fmt::format("{} {} X1 F100", motion, setter))),
+                  HasSubstr("would both use the axis words; write two blocks"))
+          << motion << " " << setter;
+    EXPECT_THAT(ends_of(fmt::format("G1 X2\n{} X1 Y0 Z0", setter)), testing::SizeIs(1))
+        << "no motion of its own: " << setter;
+  }
+}
+
 TEST(Rs274Offset, OfAWorkSystemIsThePartFrame) {
   const auto done = imported(program_of("G10 L2 P1 X100 Y0 Z-50\nG10 L2 P2 X200 Y0 Z-50\nG0 X0 Y0 Z0\nG55 X1"));
   EXPECT_THAT(done.methods,
