@@ -41,7 +41,7 @@ double OscillationWatch::take_effort(const OscillationSeen& seen) noexcept {
 void OscillationWatch::begin() noexcept {
   turned_ = path_turned_ = 0;
   most_acceleration_ = 0;
-  cycles_ = last_turn_ = 0;
+  cycles_ = last_turn_.at = 0;
   swings_.first = 0;
   changes_ = {};
   path_turns_.restart();
@@ -65,13 +65,13 @@ void OscillationWatch::add_turn() noexcept {
   }
   ++turned_;
   ++chain_;
-  last_turn_ = cycles_;
+  last_turn_.at = cycles_;
   // What began it, a blow or another gain, is in the first of them.
   for (double* const sum : {&changes_.work, &changes_.efforts, &changes_.ways}) *sum *= kKept;
 }
 
 double OscillationWatch::hz() const noexcept {
-  return (turned_ - 1) / (2 * period_s_ * static_cast<double>(last_turn_ - 1));
+  return (turned_ - 1) / (2 * period_s_ * static_cast<double>(last_turn_.at - 1));
 }
 
 double OscillationWatch::latest_swings() const noexcept {
@@ -109,15 +109,15 @@ void OscillationWatch::step(const OscillationSeen& seen, FaultSink& faults) noex
   }
   if (turns) {
     // Much quicker all at once is another swing, as a word that comes twice leaves one of some cycles.
-    const std::int64_t gap = cycles_ - last_turn_;
-    if (turned_ > 1 && kQuicker * gap < last_gap_) {
+    const std::int64_t gap = cycles_ - last_turn_.at;
+    if (turned_ > 1 && kQuicker * gap < last_turn_.gap) {
       begin();
       ++cycles_;
     }
-    last_gap_ = gap;
+    last_turn_.gap = gap;
     add_turn();
   }
-  if (static_cast<double>(cycles_ - last_turn_) * period_s_ > kSlowestTurnS) {
+  if (static_cast<double>(cycles_ - last_turn_.at) * period_s_ > kSlowestTurnS) {
     chain_ = path_chain_ = 0;
     return begin();
   }

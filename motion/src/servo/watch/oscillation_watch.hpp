@@ -70,8 +70,10 @@ class OscillationWatch {
   int path_turned_ = 0;
   double most_acceleration_ = 0;
   std::int64_t cycles_ = 0;
-  std::int64_t last_turn_ = 0;
-  std::int64_t last_gap_ = 0;  ///< cycles between the last two turns
+  struct {
+    std::int64_t at = 0;
+    std::int64_t gap = 0;  ///< cycles since the one before
+  } last_turn_;
   struct {
     std::array<double, kCompared> latest{};
     double first = 0;  ///< the sum of so many
