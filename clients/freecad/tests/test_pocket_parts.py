@@ -132,7 +132,7 @@ class PocketPartsTest(unittest.TestCase):
         self.assertGreater(len(read_pocket("Top", outline_of(top, self.floor(BLOCK, 20)), Pocket(top_mm=20.0, depth_mm=4.0, safe_mm=25.0, **GIVEN), rapid_mm_min=2000).program), 5)
 
     def test_the_tool_does_not_cross_through_the_part(self):
-        self.refused(MILLED, "below the part's top, Z 20", top_mm=12.0, depth_mm=2.0, safe_mm=15.0)
+        self.refused(MILLED, "below the top of the part, Z 20", top_mm=12.0, depth_mm=2.0, safe_mm=15.0)
 
     def test_an_object_whose_part_has_changed_says_so(self):
         block = self.feature(MILLED)

@@ -21,8 +21,8 @@ POLYNOMIAL = 3
 SLOW_SHARE = 0.02
 LONGEST_DELAY_S = 0.01
 # Where less than this is explained, something pulls by where the joint stands, as a motor's magnets and cables do, and a soft loop goes
-# along with it. The joint comes by each place several times, at other speeds and both ways: what is the same there each time is left out. So is what shakes motion
-# and effort alike by way of the loop.
+# along with it. The joint comes by each place several times, at other speeds and both ways: what is the same there each time is left
+# out. So is what shakes motion and effort alike by way of the loop.
 LITTLE_EXPLAINED = 0.999
 PLACES = 200  # along the way
 # A joint that rings explains itself as well a period of its resonance later: the earliest delay that leaves at most so

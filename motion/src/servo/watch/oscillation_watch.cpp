@@ -18,7 +18,7 @@ constexpr double kSlowHz = 40, kGrows = 1.3;
 // Where a loop gives back no more than friction takes, the work is next to nothing, and half a cycle by which effort
 // and way are apart decides on its sign. What holds back a force from outside is far below.
 constexpr double kResists = 0.12;
-constexpr int kQuicker = 8;
+constexpr int kQuicker = 8;        // from turn to turn: a quick swing that is seen by samples varies by three
 constexpr double kKept = 0.85;     // of the work until then, at each turn
 constexpr double kRises = 1.05;    // since the first turns: it grows, if slowly
 constexpr double kPathTurn = 0.1;  // of the largest acceleration that the path asks for

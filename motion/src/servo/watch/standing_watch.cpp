@@ -82,9 +82,9 @@ void StandingWatch::watch_digits(const ResponseSeen& seen, FaultSink& faults) co
   const double for_s = static_cast<double>(digits_.same()) * period_s_;
   const double away = seen.position_set - set_still_;
   const double digits_away = digits_.digit() > 0 ? std::abs(away) / digits_.digit() : 0;
-  const bool is_odd = digits_.noisy() && digits_away > kAwayDigits;
-  const double least = is_odd && digits_away > kFarDigits ? kFarEffort : kFrozenEffort;
-  if (froze() || is_odd) {
+  const bool noise_stopped = digits_.noisy() && digits_away > kAwayDigits;
+  const double least = noise_stopped && digits_away > kFarDigits ? kFarEffort : kFrozenEffort;
+  if (froze() || noise_stopped) {
     if (for_s < kStandsS || changed < std::clamp(2 * usual, least, kStillEffort)) return;
     raise_frozen(faults);
   } else if (!slips() && for_s >= kStillS && changed >= kStillEffort && std::abs(away) > 2 * digits_.digit()) {

@@ -6,6 +6,7 @@ import numpy as np
 import Part
 from FreeCAD import Vector
 
+from rmac_freecad.jobs.standing import below_top
 from rmac_freecad.pockets.area import CHORD_MM, swath
 from rmac_freecad.pockets.refusal import PocketRefused
 from rmac_freecad.pockets.tracks import SideTrack
@@ -31,9 +32,9 @@ def check_part(outline, levels, pocket):
     around = outline.around
     if around is None:
         return
-    top = around.shape.BoundBox.ZMax
-    if pocket.safe_mm < top:
-        raise PocketRefused(f"the height to cross at, Z {pocket.safe_mm:g}, is below the part's top, Z {top:.4g}; cross above it")
+    wrong = below_top("the part", pocket.safe_mm, around.shape.BoundBox.ZMax)
+    if wrong:
+        raise PocketRefused(wrong)
     bottom = pocket.top_mm - pocket.depth_mm
     if around.is_floor and bottom < outline.z - GOUGE_MM:
         deepest = f"a depth of {pocket.top_mm - outline.z:.4g} mm" if pocket.top_mm > outline.z else "a higher top"

@@ -71,7 +71,7 @@ class SearchDialog(Dialog):
             tools = work.tools(next(iter(by_feed.values())))
             return compare(programs, completed(_table(client), tools), rmac, within_mm)
 
-        self.ask(compared, self._show_fits, f"{work.label} is simulated on {len(machines)} machines…")
+        self.ask(compared, lambda came: self._show_fits(*came, within_mm), f"{work.label} is simulated on {len(machines)} machines…")
 
     def characteristics(self):
         self.characteristics_dialog = CharacteristicsDialog(self.session, self.list.chosen)
@@ -95,20 +95,12 @@ class SearchDialog(Dialog):
         self._enable()
         self.message.tell(f"{len(machines)} machines" if machines else "No machine is like that; ask for less.")
 
-    def _show_fits(self, came):
-        fits, why = came
+    def _show_fits(self, fits, why, within_mm):
         self.list.show_fits(fits, why)
         if not fits:
             first, reason = next(iter(why.items()))
             return self.failed(NoneFits(f"None of these machines can cut the job; why not stands beside each. {first}: {reason}"))
-        self.message.tell(f"{len(fits)} of {len(self.list.machines)} machines can cut it; {self._first(fits)} A machine is taken to stand at its zero, and the part's zero at the machine's.")
-
-    def _first(self, fits):
-        first, within_mm = fits[0], self.within.quantity
-        off_mm = first.found.off_path_mm
-        if within_mm and (off_mm is None or off_mm > within_mm):
-            return f"none is known to keep within {length_text(within_mm)} of the path; {first.machine} is the most accurate."
-        return f"{first.machine} is the quickest{f' within {length_text(within_mm)} of the path' if within_mm else ''}."
+        self.message.tell(f"{len(fits)} of {len(self.list.machines)} machines can cut it; {_first(fits[0], within_mm)} A machine is taken to stand at its zero, and the part's zero at the machine's.")
 
     def _loaded(self, machine):
         self.session.machine = machine
@@ -128,6 +120,13 @@ class SearchDialog(Dialog):
         self.characteristics_button.setEnabled(chosen)
         self.load_button.setEnabled(chosen)
         self.fits_button.setEnabled(bool(self.list.machines))
+
+
+def _first(fit, within_mm):
+    off_mm = fit.found.off_path_mm
+    if within_mm and (off_mm is None or off_mm > within_mm):
+        return f"none is known to keep within {length_text(within_mm)} of the path; {fit.machine} is the most accurate."
+    return f"{fit.machine} is the quickest{f' within {length_text(within_mm)} of the path' if within_mm else ''}."
 
 
 def _table(client):
